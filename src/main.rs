@@ -1,0 +1,2 @@
+//! poligon
+fn main() {}

@@ -1,0 +1,1 @@
+//! Bake: real data in, a world out.

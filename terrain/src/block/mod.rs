@@ -1,0 +1,1 @@
+//! Blocks: what the ground is shown in.

@@ -1,0 +1,1 @@
+//! World coordinates and geodetic ones.

@@ -1,0 +1,1 @@
+//! Least and greatest heights over ever larger squares of cells.

@@ -1,0 +1,1 @@
+//! Made-up terrain for tests and benches.
