@@ -22,6 +22,5 @@ pub mod verify;
 
 pub use field::{Corner, Field, FieldError, Triangle};
 pub use grid::{BlockIndex, CELLS, Grid, GridError, POSTS, PostRect};
-
-
-
+pub use ground::{Area, AreaError, Ground, SurfaceHit};
+pub use pyramid::{Pyramid, Range};
