@@ -20,6 +20,7 @@ pub mod store;
 pub mod synthetic;
 pub mod verify;
 
+pub use block::rings::{RingMasks, Rings};
 pub use field::{Corner, Field, FieldError, Triangle};
 pub use grid::{BlockIndex, CELLS, Grid, GridError, POSTS, PostRect};
 pub use ground::{Area, AreaError, Ground, SurfaceHit};
