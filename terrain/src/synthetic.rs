@@ -2,6 +2,7 @@
 //!
 //! Frame and units as in [`crate::field`].
 
+use crate::block::ground_map::unit;
 use crate::field::Field;
 use crate::grid::Grid;
 
@@ -59,16 +60,4 @@ fn value_noise(x: f32, y: f32, seed: u32) -> f32 {
     let top = at(0, 0) + u * (at(1, 0) - at(0, 0));
     let bottom = at(0, 1) + u * (at(1, 1) - at(0, 1));
     top + v * (bottom - top)
-}
-
-/// A number in 0..1 from two integers (the finaliser of MurmurHash3, public domain, A. Appleby).
-fn unit(x: i32, y: i32, seed: u32) -> f32 {
-    let mut h =
-        (x as u32).wrapping_mul(0x9E37_79B1) ^ (y as u32).wrapping_mul(0x85EB_CA77) ^ seed.wrapping_mul(0xC2B2_AE3D);
-    h ^= h >> 16;
-    h = h.wrapping_mul(0x85EB_CA6B);
-    h ^= h >> 13;
-    h = h.wrapping_mul(0xC2B2_AE35);
-    h ^= h >> 16;
-    (h >> 8) as f32 / (1u32 << 24) as f32
 }

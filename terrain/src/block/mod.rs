@@ -9,13 +9,18 @@
 //!
 //! Source: Gabdrakhmanov, landscape model for a flight trainer: block types 0, 1 and combined; borders at level 0.
 
+pub mod builder;
+pub mod ground_map;
 pub mod light;
 pub mod mask;
 pub mod mesh;
 
+pub mod payload;
 pub mod rings;
 pub mod template;
+pub mod window;
 
 pub use mask::Mask;
 
+pub use payload::{Landscape, Payload};
 pub use rings::Rings;
