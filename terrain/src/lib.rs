@@ -22,6 +22,3 @@ pub mod verify;
 
 pub use field::{Corner, Field, FieldError, Triangle};
 pub use grid::{BlockIndex, CELLS, Grid, GridError, POSTS, PostRect};
-
-
-
