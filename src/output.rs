@@ -6,7 +6,7 @@
 use crate::failure::Failure;
 use serde::Serialize;
 use serde_json::{Map, Value};
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 use std::io::{self, Write as _};
 
 /// Longest list that a table shows whole; `--json` has all of it.
@@ -39,6 +39,11 @@ impl Output {
             _ => Ok(()),
         }
     }
+}
+
+/// Tells a person something on stderr. That no one can be told is no reason to stop.
+pub fn tell(line: impl fmt::Display) {
+    let _ = writeln!(io::stderr(), "{line}");
 }
 
 /// The report as JSON. Numbers that are not finite become null.

@@ -2,7 +2,7 @@
 
 use crate::args::FlyArgs;
 use crate::failure::Failure;
-use crate::output::Output;
+use crate::output::{self, Output};
 use std::ffi::OsStr;
 
 /// How the flight is shown and timed.
@@ -42,7 +42,7 @@ fn has_display() -> bool {
 ///
 /// # Errors
 /// [`Failure`] says what was expected and what was found.
-pub fn run(args: &FlyArgs, output: Output) -> Result<(), Failure> {
+pub fn run(args: &FlyArgs, to: Output) -> Result<(), Failure> {
     if let Some(scenario) = &args.scenario {
         return Err(Failure::Misuse(format!(
             "this version reads no scenarios, found --scenario {}",
@@ -51,10 +51,10 @@ pub fn run(args: &FlyArgs, output: Output) -> Result<(), Failure> {
     }
     let mode = Mode::of(args, has_display());
     if mode != Mode::Window {
-        eprintln!("no window: pictures go to {}", args.shots.display());
+        output::tell(format_args!("no window: pictures go to {}", args.shots.display()));
     }
     let _ = (&args.world, args.seconds_s, args.frames, args.eye, args.heading_deg, args.speed_mps);
-    let _ = (&args.view, &args.report, output);
+    let _ = (&args.view, &args.report, to);
     super::not_built_yet("fly")
 }
 
