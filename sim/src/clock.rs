@@ -189,7 +189,7 @@ impl UtcTime {
 
     /// Seconds since 1970-01-01T00:00:00Z.
     pub fn unix_s(self) -> f64 {
-        self.unix_ns as f64 * 1e-9
+        self.unix_ns as f64 / 1e9
     }
 
     /// (year, month, day, hour, minute, second), the second cut to a whole one.

@@ -291,7 +291,9 @@ impl Track {
         let heading = |d: DVec3| d.x.atan2(-d.z);
         let turn = heading(self.tangent(after)) - heading(self.tangent(before));
         let turn = (turn + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
-        turn / ((after - before) as f64 * self.spacing_m)
+        // The track goes straight on beyond its ends: the wings level over the last kilometre.
+        let to_end_m = i.min(self.samples_m.len() - 1 - i) as f64 * self.spacing_m;
+        turn / ((after - before) as f64 * self.spacing_m) * (to_end_m / 1_000.0).min(1.0)
     }
 }
 

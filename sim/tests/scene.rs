@@ -213,7 +213,10 @@ fn a_ground_that_fails_is_reported_not_passed_on() {
     let broken: Arc<HeightAt> = Arc::new(|_, _| panic!("no tile"));
     let thread = SimThread::start(scene(3_000.0, 180.0), Arc::new(hills)).unwrap();
     thread.send(Message::Ground(broken));
-    std::thread::sleep(Duration::from_millis(200));
+    let patience = std::time::Instant::now();
+    while thread.is_running() && patience.elapsed() < Duration::from_secs(10) {
+        std::thread::sleep(Duration::from_millis(10));
+    }
     assert!(!thread.is_running() && thread.now().aircraft.is_finite());
     assert_eq!(thread.stop().err().map(|e| e.to_string()).as_deref(), Some("the simulation stopped: no tile"));
 }
