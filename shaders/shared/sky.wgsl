@@ -1,0 +1,53 @@
+// shared/sky.wgsl: sky radiance and haze, for the vertex or the fragment stage.
+// Needs: shared/frame.wgsl. Twin: visual/src/uniforms.rs haze_transmittance, visual/src/sky.rs (the table).
+
+const TABLE_WIDTH: f32 = 64.0;
+const TABLE_HEIGHT: f32 = 64.0;
+const HAZE_SCALE_HEIGHT_M: f32 = 2000.0;
+const MOLECULE_SCALE_HEIGHT_M: f32 = 8000.0;
+
+// Exposed radiance of the sky along a unit direction; below the horizon the horizon's. One texture read.
+fn sky_radiance(direction: vec3<f32>) -> vec3<f32> {
+    let level = max(length(direction.xz), 1e-6);
+    let azimuth_cos = dot(direction.xz, frame.sun_level) / level;
+    let u = sqrt(max(0.5 - 0.5 * azimuth_cos, 0.0));
+    let v = sqrt(max(direction.y, 0.0));
+    let texel = vec2<f32>(
+        (u * (TABLE_WIDTH - 1.0) + 0.5) / TABLE_WIDTH,
+        (v * (TABLE_HEIGHT - 1.0) + 0.5) / TABLE_HEIGHT,
+    );
+    return textureSampleLevel(sky_table, sky_sampler, texel, 0.0).rgb;
+}
+
+// Mean of a density exp(-height / scale) between two heights, given in scale heights above where it is 1.
+fn mean_density(eye: f32, eye_density: f32, point: f32) -> f32 {
+    let rise = point - eye;
+    let even = exp(-0.5 * (eye + point));
+    let slant = (eye_density - exp(-point)) / select(rise, 1.0, abs(rise) < 0.01);
+    return select(slant, even, abs(rise) < 0.01);
+}
+
+// Share of a point's light that reaches the eye through `distance_m` of air; heights above sea level.
+// On the level at the haze base it is 2 % at the visibility.
+fn haze_transmittance(distance_m: f32, eye_height_m: f32, point_height_m: f32) -> f32 {
+    let eye_haze = clamp((eye_height_m - frame.haze_base_m) / HAZE_SCALE_HEIGHT_M, 0.0, 60.0);
+    let point_haze = clamp((point_height_m - frame.haze_base_m) / HAZE_SCALE_HEIGHT_M, 0.0, 60.0);
+    let eye_molecules = clamp(eye_height_m / MOLECULE_SCALE_HEIGHT_M, 0.0, 60.0);
+    let point_molecules = clamp(point_height_m / MOLECULE_SCALE_HEIGHT_M, 0.0, 60.0);
+    let haze = frame.haze_per_m * mean_density(eye_haze, exp(-eye_haze), point_haze);
+    let molecules = frame.molecules_per_m * mean_density(eye_molecules, exp(-eye_molecules), point_molecules);
+    return exp(-distance_m * (haze + molecules));
+}
+
+// The same from the frame's own eye, cheaper, and with the fade at the end of the ground: 0 from fade_end_m on.
+fn haze_from_eye(relative_m: vec3<f32>) -> f32 {
+    let point_height_m = frame.eye_altitude_m + relative_m.y;
+    let eye_haze = clamp((frame.eye_altitude_m - frame.haze_base_m) / HAZE_SCALE_HEIGHT_M, 0.0, 60.0);
+    let point_haze = clamp((point_height_m - frame.haze_base_m) / HAZE_SCALE_HEIGHT_M, 0.0, 60.0);
+    let eye_molecules = clamp(frame.eye_altitude_m / MOLECULE_SCALE_HEIGHT_M, 0.0, 60.0);
+    let point_molecules = clamp(point_height_m / MOLECULE_SCALE_HEIGHT_M, 0.0, 60.0);
+    let haze = frame.haze_per_m * mean_density(eye_haze, frame.eye_haze, point_haze);
+    let molecules = frame.molecules_per_m * mean_density(eye_molecules, frame.eye_molecules, point_molecules);
+    let faded = smoothstep(frame.fade_start_m, frame.fade_end_m, length(relative_m.xz));
+    return exp(-length(relative_m) * (haze + molecules)) * (1.0 - faded);
+}
