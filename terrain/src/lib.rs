@@ -22,6 +22,4 @@ pub mod verify;
 
 pub use field::{Corner, Field, FieldError, Triangle};
 pub use grid::{BlockIndex, CELLS, Grid, GridError, POSTS, PostRect};
-
-
-
+pub use projection::{Geodetic, Projection, ProjectionError};
