@@ -22,7 +22,7 @@ struct Block {
 }
 
 @group(1) @binding(0) var<uniform> window: WindowUniforms;
-@group(1) @binding(1) var<uniform> blocks: array<Block, 4096>;
+@group(1) @binding(1) var<uniform> blocks: array<Block, 1024>;
 @group(1) @binding(2) var heights: texture_2d<f32>;
 
 struct Post {

@@ -8,7 +8,7 @@ use super::light;
 use super::mask::{Mask, block_posts};
 use super::mesh::{self, Indices, TILE};
 use super::rings::RingMasks;
-use crate::features::Lakes;
+use crate::features::lakes::Lakes;
 use crate::grid::BlockIndex;
 use crate::ground::Ground;
 use crate::pyramid::Range;

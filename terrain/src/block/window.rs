@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// How a window works.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Blocks along a side: even, 4..=64.
+    /// Blocks along a side: even, 4..=[`MAX_BLOCKS`].
     pub blocks: u32,
     /// Which error is allowed where.
     pub rings: Rings,
@@ -35,6 +35,9 @@ pub struct Settings {
     /// Builder threads.
     pub threads: usize,
 }
+
+/// Most blocks along a side of a window; the table of blocks then fits the smallest uniform buffer there is.
+pub const MAX_BLOCKS: u32 = 32;
 
 /// Bytes that one frame may upload.
 pub const BUDGET_BYTES: usize = 128 << 10;
@@ -168,7 +171,7 @@ impl From<&Job> for Asked {
 impl Window {
     /// A window with nothing in it yet; the first update fills it around the eye.
     pub fn new(landscape: Arc<Landscape>, mut settings: Settings, to_sun: DVec3) -> Self {
-        settings.blocks = settings.blocks.clamp(4, 64) & !1;
+        settings.blocks = settings.blocks.clamp(4, MAX_BLOCKS) & !1;
         let builder = Builder::new(landscape.clone(), settings.threads);
         Self {
             builder,

@@ -3,7 +3,7 @@
 use super::*;
 use crate::block::ground_map::Climate;
 use crate::block::rings::RingMasks;
-use crate::features::Lakes;
+use crate::features::lakes::Lakes;
 use crate::{Grid, Ground, synthetic};
 
 const BLOCKS: u32 = 12;
