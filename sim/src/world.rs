@@ -292,6 +292,20 @@ impl Scene {
     }
 }
 
+impl Flags {
+    /// The states that a pilot has to know of, in capitals.
+    pub fn names(&self) -> Vec<&'static str> {
+        let all = [
+            (self.paused, "PAUSED"),
+            (self.frozen, "FROZEN"),
+            (self.mode == Mode::Slew, "SLEW"),
+            (self.mode == Mode::Track, "TRACK"),
+            (self.crashed, "CRASHED"),
+        ];
+        all.into_iter().filter_map(|(on, name)| on.then_some(name)).collect()
+    }
+}
+
 impl Snapshot {
     /// The scene at part `t` (0..1) of the way from `a` to `b`: places straight, attitudes along the shortest turn.
     ///

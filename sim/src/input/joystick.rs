@@ -7,9 +7,13 @@
 //! Invariant: a device that goes leaves its axes neutral and its throttle where it was; a bad value changes nothing.
 
 use super::{Command, Curve, ViewLook};
-use gilrs::{Axis, Button, EventType, GamepadId, Gilrs, GilrsBuilder};
+use gilrs::{Axis, Button, Event, EventType, GamepadId, Gilrs, GilrsBuilder};
 use std::collections::HashMap;
 use std::fmt;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Faulty events after which sticks are no longer read.
+const MOST_FAULTS: u32 = 8;
 
 /// What an axis moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -140,6 +144,13 @@ impl Bindings {
         self.looking.take().map(|_| Command::LookEnd)
     }
 
+    /// Every device went.
+    pub fn disconnect_all(&mut self) {
+        self.devices.clear();
+        self.values.retain(|(_, target), _| *target == Target::Throttle);
+        self.looking = None;
+    }
+
     /// Devices now connected.
     pub fn device_count(&self) -> usize {
         self.devices.len()
@@ -224,6 +235,7 @@ pub struct Joystick {
     gilrs: Gilrs,
     bindings: Bindings,
     is_gamepad: HashMap<usize, bool>,
+    faults: u32,
 }
 
 impl Joystick {
@@ -235,7 +247,7 @@ impl Joystick {
         // Dead zones are ours, by axis: gilrs' own would be applied on top.
         let gilrs = GilrsBuilder::new().with_default_filters(false).build();
         let gilrs = gilrs.map_err(|error| JoystickError(error.to_string()))?;
-        let mut joystick = Self { gilrs, bindings: Bindings::default(), is_gamepad: HashMap::new() };
+        let mut joystick = Self { gilrs, bindings: Bindings::default(), is_gamepad: HashMap::new(), faults: 0 };
         let present: Vec<GamepadId> = joystick.gilrs.gamepads().map(|(id, _)| id).collect();
         for id in present {
             joystick.connect(id);
@@ -260,7 +272,7 @@ impl Joystick {
     pub fn poll(&mut self) -> Vec<Command> {
         let mut commands = Vec::new();
         for _ in 0..1_000 {
-            let Some(event) = self.gilrs.next_event() else { break };
+            let Some(event) = self.next_event() else { break };
             let device = usize::from(event.id);
             let gamepad = self.is_gamepad.get(&device).copied().unwrap_or(false);
             let command = match event.event {
@@ -291,6 +303,20 @@ impl Joystick {
             commands.extend(command);
         }
         commands
+    }
+
+    /// The next event. gilrs 0.11 panics where a device sends an axis that it had not announced; the event is lost and
+    /// the rest goes on, until a device does it too often.
+    fn next_event(&mut self) -> Option<Event> {
+        while self.faults < MOST_FAULTS {
+            let gilrs = &mut self.gilrs;
+            match catch_unwind(AssertUnwindSafe(|| gilrs.next_event())) {
+                Ok(event) => return event,
+                Err(_) => self.faults += 1,
+            }
+        }
+        self.bindings.disconnect_all();
+        None
     }
 
     fn connect(&mut self, id: GamepadId) {

@@ -3,10 +3,12 @@
 //! Keyboard and joystick feed one [`Controls`]; nothing behind it knows which hand moved. Bad numbers stop here.
 
 mod controls;
+mod head;
 pub mod joystick;
 pub mod keyboard;
 
 pub use controls::{Command, Controls, Curve, ViewLook};
+pub use head::Head;
 
 use joystick::Joystick;
 use keyboard::Keyboard;
