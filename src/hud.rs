@@ -71,6 +71,8 @@ pub struct HudInput<'a> {
     pub roll_rad: f64,
     /// Climb positive, m/s.
     pub vertical_speed_mps: f64,
+    /// Velocity in view axes (x right, y up, z backward), m/s: where the aircraft goes.
+    pub velocity_in_view_mps: [f64; 3],
     /// Lift over weight.
     pub load_factor: f64,
     /// 0..1.
@@ -107,6 +109,7 @@ pub fn hud(input: &HudInput) -> (Vec<HudLine>, Vec<HudText>) {
     if input.looking_ahead {
         ladder(&mut sheet, input);
         boresight(&mut sheet);
+        flight_path(&mut sheet, input);
         bank_scale(&mut sheet, input.roll_rad);
     }
     heading_tape(&mut sheet, input.true_heading_rad);
@@ -179,12 +182,9 @@ impl Sheet {
 
 /// Pitch ladder: a rung each 5 or 10 degrees, dashed under the horizon, number at both ends.
 fn ladder(sheet: &mut Sheet, input: &HudInput) {
-    let fov_is_sound = input.fov_y_rad > 0.01 && input.fov_y_rad < 3.1;
-    if !input.pitch_rad.is_finite() || !input.roll_rad.is_finite() || !fov_is_sound || sheet.scale <= 0.0 {
+    let Some(focal) = focal(sheet, input).filter(|_| input.pitch_rad.is_finite() && input.roll_rad.is_finite()) else {
         return;
-    }
-    // Pixels of the picture, not of the design: the ladder must lie on the world.
-    let focal = 0.5 * sheet.size.1 / (0.5 * input.fov_y_rad).tan() / sheet.scale;
+    };
     let (sin_roll, cos_roll) = input.roll_rad.sin_cos();
     let on_screen = |along: f64, up: f64| [along * cos_roll - up * sin_roll, -along * sin_roll - up * cos_roll];
     let apart_deg = if focal * 5f64.to_radians().tan() >= 60.0 { 5 } else { 10 };
@@ -223,6 +223,30 @@ fn ladder(sheet: &mut Sheet, input: &HudInput) {
     }
 }
 
+/// Focal length in design pixels, but of the picture: what is drawn with it lies on the world.
+fn focal(sheet: &Sheet, input: &HudInput) -> Option<f64> {
+    let is_sound = input.fov_y_rad > 0.01 && input.fov_y_rad < 3.1 && sheet.scale > 0.0;
+    is_sound.then(|| 0.5 * sheet.size.1 / (0.5 * input.fov_y_rad).tan() / sheet.scale)
+}
+
+/// Where the aircraft goes: a ring with wings, at the edge of the ladder if it goes beyond.
+fn flight_path(sheet: &mut Sheet, input: &HudInput) {
+    const RADIUS: f64 = 7.0;
+    let [right, up, back] = input.velocity_in_view_mps;
+    let Some(focal) = focal(sheet, input).filter(|_| back < -1.0) else { return };
+    let (x, y) = (-focal * right / back, focal * up / back);
+    let beyond = (x.hypot(y) / LADDER_RADIUS).max(1.0);
+    let (x, y) = (x / beyond, y / beyond);
+    let ring: Vec<[f64; 2]> = (0..=16)
+        .map(|i| (f64::from(i) * TAU / 16.0).sin_cos())
+        .map(|(sin, cos)| [x + RADIUS * sin, y - RADIUS * cos])
+        .collect();
+    sheet.line(&ring, 1.8, GREEN);
+    sheet.line(&[[x - RADIUS, y], [x - 2.4 * RADIUS, y]], 1.8, GREEN);
+    sheet.line(&[[x + RADIUS, y], [x + 2.4 * RADIUS, y]], 1.8, GREEN);
+    sheet.line(&[[x, y - RADIUS], [x, y - 2.0 * RADIUS]], 1.8, GREEN);
+}
+
 /// Where the nose points.
 fn boresight(sheet: &mut Sheet) {
     sheet.line(
@@ -247,8 +271,8 @@ fn bank_scale(sheet: &mut Sheet, roll_rad: f64) {
         let shown = half_turn(roll_rad);
         let limit = 60f64.to_radians();
         let colour = if shown.abs() > limit { AMBER } else { GREEN };
-        // Bank to the right moves the pointer to the left, as the sky does: it stays over the true vertical.
-        let at = -shown.clamp(-limit, limit);
+        // The pointer lies where straight down is: to the right in a bank to the right.
+        let at = shown.clamp(-limit, limit);
         let (tip, base) = (RADIUS - 2.0, RADIUS - 15.0);
         let triangle = [on_arc(at, tip), on_arc(at - 0.032, base), on_arc(at + 0.032, base), on_arc(at, tip)];
         sheet.line(&triangle, 2.0, colour);
@@ -384,6 +408,7 @@ mod tests {
             pitch_rad: 0.0,
             roll_rad: 0.0,
             vertical_speed_mps: -3.25,
+            velocity_in_view_mps: [0.0, -6.0, -250.0],
             load_factor: 1.0,
             throttle: 0.5,
             frame_ms: 16.7,
@@ -461,6 +486,7 @@ mod tests {
                 pitch_rad: v,
                 roll_rad: v,
                 vertical_speed_mps: v,
+                velocity_in_view_mps: [v; 3],
                 load_factor: v,
                 throttle: v,
                 frame_ms: v,

@@ -16,15 +16,19 @@ pub mod input;
 pub mod integrate;
 pub mod run;
 pub mod slew;
+pub mod snapshot;
 pub mod track;
+pub mod utc;
 pub mod world;
 
 pub use aircraft::{AircraftState, Condition};
-pub use clock::{Clock, UtcTime};
+pub use clock::Clock;
 pub use input::{Command, Controls};
 pub use run::{SimThread, lockstep};
+pub use snapshot::{Flags, Mode, Snapshot};
 pub use track::Track;
-pub use world::{Flags, Mode, Scene, Snapshot};
+pub use utc::UtcTime;
+pub use world::Scene;
 
 /// Ground height in metres above mean sea level over a plan point (x, z) of the world; `None` where there is no data.
 pub type HeightAt = dyn Fn(f64, f64) -> Option<f64> + Send + Sync;

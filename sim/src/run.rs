@@ -5,10 +5,11 @@
 //! renderer that stalls costs the simulation nothing. A simulation that stalls is slowed ([`crate::clock`]).
 
 use crate::aircraft::AircraftState;
-use crate::clock::UtcTime;
 use crate::input::{Command, Controls};
+use crate::snapshot::Snapshot;
 use crate::track::Track;
-use crate::world::{Scene, Snapshot};
+use crate::utc::UtcTime;
+use crate::world::Scene;
 use crate::{HeightAt, clock::MAX_FRAME_S};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

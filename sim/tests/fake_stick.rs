@@ -82,3 +82,13 @@ fn values_out_of_range_and_a_flood_of_events_do_no_harm() {
     let Some(output) = played(&events, "2.5") else { return };
     assert!(output.contains("(044f:b10a)") && !output.contains("NaN"), "{output}");
 }
+
+#[test]
+fn an_axis_that_was_never_announced_does_not_end_the_program() {
+    let events = "# EVEMU 1.2\n\
+        E: 0.600000 0003 0002 100\nE: 0.600000 0000 0000 0\n\
+        E: 0.700000 0001 02ff 1\nE: 0.700000 0000 0000 0\n\
+        E: 0.800000 0003 0000 16383\nE: 0.800000 0000 0000 0\n";
+    let Some(output) = played(events, "2.0") else { return };
+    assert!(output.contains("roll Some(1.0)"), "what follows still counts: {output}");
+}

@@ -2,11 +2,14 @@
 //!
 //! Keyboard and joystick feed one [`Controls`]; nothing behind it knows which hand moved. Bad numbers stop here.
 
+pub mod bindings;
 mod controls;
+mod head;
 pub mod joystick;
 pub mod keyboard;
 
 pub use controls::{Command, Controls, Curve, ViewLook};
+pub use head::Head;
 
 use joystick::Joystick;
 use keyboard::Keyboard;
@@ -55,5 +58,23 @@ impl Input {
             throttle: self.throttle,
         };
         (controls.checked(), commands)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_keyboard_alone_gives_controls_and_the_throttle_last_set_counts() {
+        let mut input = Input::new(None, f64::NAN);
+        assert_eq!(input.poll(0.1), (Controls::default(), Vec::new()));
+        input.keyboard.key("PageUp", true);
+        input.keyboard.key("ArrowDown", true);
+        let (controls, _) = input.poll(0.1);
+        assert!((controls.throttle - 0.54).abs() < 1e-12 && controls.pitch > 0.2);
+        input.keyboard.set_throttle(0.9);
+        input.keyboard.release_all();
+        assert_eq!(input.poll(0.0).0.throttle, 0.9);
     }
 }
