@@ -152,7 +152,10 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
     // Samples are within the field's bounds and means do not leave them; a lake's level was checked when read.
     let field = Field::new(grid, sampled.heights_m).map_err(|_| BakeError::AllVoid)?;
     let name = request.name.clone();
-    Ok(World { name, projection, field: Arc::new(field), lakes, masks: Vec::new(), info })
+    let mut world = World { name, projection, field: Arc::new(field), lakes, masks: Vec::new(), info };
+    progress("masks", 0.0);
+    world.make_ring_masks();
+    Ok(world)
 }
 
 fn scaled(input: &Input, height_scale: f64) -> Result<Raster, BakeError> {

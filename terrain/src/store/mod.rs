@@ -10,10 +10,12 @@
 
 mod folder;
 mod info;
+mod masks;
 
 pub use folder::StoreError;
 pub use info::{Extent, FORMAT_VERSION, FileInfo, LakeInfo, Source, Statistics, Voids, WorldInfo};
 
+use crate::block::rings::{RingMasks, Rings};
 use crate::features::lakes::{Lake, Lakes};
 use crate::field::Field;
 use crate::grid::Grid;
@@ -93,6 +95,17 @@ impl World {
             masks,
             info,
         })
+    }
+
+    /// The masks that came with the world, if any did and they fit it.
+    pub fn ring_masks(&self) -> Option<RingMasks> {
+        masks::from_bytes(&self.masks, self.field.grid().blocks().count())
+    }
+
+    /// Makes the masks that belong to the world, for the long window at one pixel, to be written with it.
+    pub fn make_ring_masks(&mut self) {
+        let rings = Rings::new(self.field.grid(), 24, 1.0);
+        self.masks = masks::to_bytes(&RingMasks::new(&self.field, rings.limits_m));
     }
 
     /// Writes the world; what was there is replaced if it was a world.
