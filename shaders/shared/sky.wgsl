@@ -1,15 +1,14 @@
 // shared/sky.wgsl: sky radiance and haze, for the vertex or the fragment stage.
 // Needs: shared/frame.wgsl. Twin: visual/src/uniforms.rs haze_transmittance, visual/src/sky.rs (the table).
 
-const TABLE_WIDTH: f32 = 64.0;
+const TABLE_WIDTH: f32 = 128.0;
 const TABLE_HEIGHT: f32 = 64.0;
 const HAZE_SCALE_HEIGHT_M: f32 = 2000.0;
 const MOLECULE_SCALE_HEIGHT_M: f32 = 8000.0;
 
 // Exposed radiance of the sky along a unit direction; below the horizon the horizon's. One texture read.
 fn sky_radiance(direction: vec3<f32>) -> vec3<f32> {
-    let level = max(length(direction.xz), 1e-6);
-    let azimuth_cos = dot(direction.xz, frame.sun_level) / level;
+    let azimuth_cos = dot(direction.xz, frame.sun_level) * inverseSqrt(max(dot(direction.xz, direction.xz), 1e-12));
     let u = sqrt(max(0.5 - 0.5 * azimuth_cos, 0.0));
     let v = sqrt(max(direction.y, 0.0));
     let texel = vec2<f32>(

@@ -21,7 +21,7 @@ use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
 /// Columns of the sky table: sine of half the azimuth from the sun, 0 to 1.
-pub const TABLE_WIDTH: u32 = 64;
+pub const TABLE_WIDTH: u32 = 128;
 /// Rows of the sky table: square root of the sine of the elevation, 0 at the horizon, 1 straight up.
 pub const TABLE_HEIGHT: u32 = 64;
 /// Steps of one ray of the table.
@@ -38,13 +38,15 @@ pub const KOSCHMIEDER: f32 = 3.912;
 
 const OZONE_PER_M: Vec3 = Vec3::new(0.650e-6, 1.881e-6, 0.085e-6);
 const HAZE_ALBEDO: f32 = 0.9;
-const HAZE_FORWARD: f32 = 0.8;
+/// Below the usual 0.8, which one lobe needs to match the glow within a few degrees of the sun but which makes the sky
+/// too bright at 10 to 30 degrees; the pass draws the close glow itself.
+const HAZE_FORWARD: f32 = 0.7;
 const PLANET_M: f32 = 6_360_000.0;
 const AIR_M: f32 = 100_000.0;
 const HIGHEST_EYE_M: f32 = 60_000.0;
 const GROUND_ALBEDO: f32 = 0.3;
-/// Starlight and airglow, far above nature's 1e-7 so that a screen can show it.
-const NIGHT: Vec3 = Vec3::new(0.9e-5, 1.3e-5, 2.4e-5);
+/// Starlight and airglow, far above nature's so that a screen can show it.
+const NIGHT: Vec3 = Vec3::new(1.0e-6, 1.5e-6, 2.8e-6);
 /// Sunlit ground is lit as seen from this far above the haze base, metres.
 const SURFACE_ABOVE_BASE_M: f32 = 1_000.0;
 
@@ -102,7 +104,7 @@ impl Air {
 
         let sun_irradiance = self.sunlight_at(surface_m, sun_sin);
         let sky_irradiance = self.sky_irradiance(surface_m, sun);
-        let exposure = exposure(sun_irradiance * sun_sin.max(0.0) + sky_irradiance);
+        let exposure = exposure(sun_irradiance * sun_sin.max(0.25) + sky_irradiance);
 
         let mut table = Vec::with_capacity((TABLE_WIDTH * TABLE_HEIGHT * 4) as usize);
         for row in 0..TABLE_HEIGHT {
@@ -286,10 +288,11 @@ pub fn molecules_at(height_m: f32) -> f32 {
     MOLECULES_PER_M.y * (-height_m.max(0.0) / MOLECULE_SCALE_HEIGHT_M).exp()
 }
 
-/// Exposure for an irradiance on level ground: the eye adapts to most of a change, not to all, so night stays dark.
+/// Exposure for an irradiance on ground that faces the light somewhat: the eye adapts to most of a change, not to
+/// all, so night stays dark.
 pub fn exposure(irradiance: Vec3) -> f32 {
-    let luminance = irradiance.dot(Vec3::new(0.2126, 0.7152, 0.0722)).max(1e-6);
-    2.0 * luminance.powf(-0.8)
+    let luminance = irradiance.dot(Vec3::new(0.2126, 0.7152, 0.0722)).max(1e-7);
+    3.3 * luminance.powf(-0.7)
 }
 
 fn rayleigh_phase(cosine: f32) -> f32 {

@@ -184,7 +184,7 @@ impl FrameBindings {
         Self { layout, sky_table, sky_view, sky_sampler, views: Vec::new() }
     }
 
-    /// Replaces the sky table (32 KiB).
+    /// Replaces the sky table (64 KiB).
     pub fn write_sky(&self, queue: &wgpu::Queue, light: &sky::Light) {
         queue.write_texture(
             self.sky_table.as_image_copy(),

@@ -1,0 +1,173 @@
+//! Every shader compiles, mirrors its host structs to the byte, and keeps its promised number of texture reads.
+//!
+//! All on the processor, with the shader compiler that the renderer itself uses.
+
+use std::mem::offset_of;
+use visual::passes::lines::Segment;
+use visual::shaders;
+use visual::uniforms::FrameUniforms;
+use wgpu::naga;
+
+fn parsed(name: &str) -> naga::Module {
+    let source = shaders::joined(name);
+    let module = naga::front::wgsl::parse_str(&source)
+        .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(&source)));
+    let mut validator =
+        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::default());
+    if let Err(error) = validator.validate(&module) {
+        panic!("{name}: {}", error.emit_to_string(&source));
+    }
+    module
+}
+
+/// Name and offset of every member of a struct, and its size.
+fn layout(module: &naga::Module, name: &str) -> (Vec<(String, u32)>, u32) {
+    for (_, found) in module.types.iter() {
+        if let (Some(found_name), naga::TypeInner::Struct { members, span }) = (&found.name, &found.inner)
+            && found_name == name
+        {
+            let named = |member: &naga::StructMember| (member.name.clone().unwrap_or_default(), member.offset);
+            return (members.iter().map(named).collect(), *span);
+        }
+    }
+    panic!("expected a struct {name} in the shader, found none");
+}
+
+/// Texture sample calls that one run of an entry can reach, and whether any stands in a loop.
+fn samples(module: &naga::Module, entry: &naga::EntryPoint) -> (usize, bool) {
+    in_block(module, &entry.function, &entry.function.body, false)
+}
+
+fn in_block(module: &naga::Module, function: &naga::Function, block: &naga::Block, looped: bool) -> (usize, bool) {
+    let mut total = (0, false);
+    let mut add = |(count, in_loop): (usize, bool)| total = (total.0 + count, total.1 || in_loop);
+    for statement in block {
+        use naga::Statement as S;
+        match statement {
+            S::Emit(range) => {
+                let count = range
+                    .clone()
+                    .filter(|&handle| matches!(function.expressions[handle], naga::Expression::ImageSample { .. }))
+                    .count();
+                add((count, looped && count > 0));
+            }
+            S::Block(inner) => add(in_block(module, function, inner, looped)),
+            S::If { accept, reject, .. } => {
+                // Both sides count: a software rasteriser runs both.
+                add(in_block(module, function, accept, looped));
+                add(in_block(module, function, reject, looped));
+            }
+            S::Switch { cases, .. } => {
+                for case in cases {
+                    add(in_block(module, function, &case.body, looped));
+                }
+            }
+            S::Loop { body, continuing, .. } => {
+                add(in_block(module, function, body, true));
+                add(in_block(module, function, continuing, true));
+            }
+            S::Call { function: called, .. } => {
+                let called = &module.functions[*called];
+                add(in_block(module, called, &called.body, looped));
+            }
+            _ => {}
+        }
+    }
+    total
+}
+
+#[test]
+fn every_shader_parses_and_validates() {
+    for (name, _) in shaders::SOURCES {
+        let module = parsed(name);
+        assert!(!module.entry_points.is_empty(), "{name} has no entry point");
+    }
+}
+
+#[test]
+fn frame_uniforms_are_the_same_on_both_sides() {
+    macro_rules! host {
+        ($($field:ident),* $(,)?) => {
+            vec![$((stringify!($field).to_owned(), offset_of!(FrameUniforms, $field) as u32)),*]
+        };
+    }
+    let host = host![
+        clip_from_relative, eye_high_m, eye_altitude_m, eye_low_m, time_s, ray_corner, exposure, ray_right, near_m,
+        ray_down, focal_px, sun_direction, sun_radius_rad, sun_irradiance, molecules_per_m, sky_irradiance, haze_per_m,
+        disc, haze_base_m, sun_level, viewport_px, fade_start_m, fade_end_m, eye_molecules, eye_haze,
+    ];
+    for (name, source) in shaders::SOURCES {
+        if source.contains("shared/frame.wgsl") {
+            let (shader, span) = layout(&parsed(name), "FrameUniforms");
+            assert_eq!(shader, host, "{name}");
+            assert_eq!(span as usize, size_of::<FrameUniforms>(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn line_segments_are_tightly_packed_in_the_order_of_their_locations() {
+    let offsets = [
+        offset_of!(Segment, ends_px),
+        offset_of!(Segment, joints),
+        offset_of!(Segment, colour),
+        offset_of!(Segment, half_width_px),
+        offset_of!(Segment, soft_px),
+    ];
+    assert_eq!(offsets, [0, 16, 32, 48, 52]);
+    let (members, _) = layout(&parsed("lines.wgsl"), "Segment");
+    let names: Vec<_> = members.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["ends_px", "joints", "colour", "half_width_px", "soft_px"]);
+}
+
+#[test]
+fn fragments_read_few_textures_and_none_in_a_loop() {
+    for (name, _) in shaders::SOURCES {
+        let module = parsed(name);
+        for entry in &module.entry_points {
+            let (count, in_loop) = samples(&module, entry);
+            let most = match (*name, entry.stage) {
+                ("terrain.wgsl", naga::ShaderStage::Fragment) => 4,
+                _ => 1,
+            };
+            assert!(count <= most && !in_loop, "{name} {}: {count} reads, in a loop: {in_loop}", entry.name);
+        }
+    }
+}
+
+#[test]
+fn the_counter_of_reads_sees_loops_calls_and_branches() {
+    let source = "
+        @group(0) @binding(0) var t: texture_2d<f32>;
+        @group(0) @binding(1) var s: sampler;
+        fn two(at: vec2<f32>) -> vec4<f32> {
+            return textureSampleLevel(t, s, at, 0.0) + textureSampleLevel(t, s, at * 2.0, 0.0);
+        }
+        @fragment fn flat_reads(@location(0) at: vec2<f32>) -> @location(0) vec4<f32> {
+            var sum = two(at);
+            if (at.x > 0.5) { sum += textureSampleLevel(t, s, at, 0.0); }
+            return sum;
+        }
+        @fragment fn looped(@location(0) at: vec2<f32>) -> @location(0) vec4<f32> {
+            var sum = vec4<f32>(0.0);
+            for (var i = 0; i < 3; i++) { sum += two(at * f32(i)); }
+            return sum;
+        }";
+    let module = naga::front::wgsl::parse_str(source).expect("the test's own shader");
+    let counts: Vec<_> = module.entry_points.iter().map(|entry| samples(&module, entry)).collect();
+    assert_eq!(counts, [(3, false), (2, true)]);
+}
+
+#[test]
+fn the_sky_table_has_the_same_size_on_both_sides() {
+    let source = shaders::joined("sky.wgsl");
+    for (name, value) in [
+        ("TABLE_WIDTH", visual::sky::TABLE_WIDTH as f32),
+        ("TABLE_HEIGHT", visual::sky::TABLE_HEIGHT as f32),
+        ("HAZE_SCALE_HEIGHT_M", visual::sky::HAZE_SCALE_HEIGHT_M),
+        ("MOLECULE_SCALE_HEIGHT_M", visual::sky::MOLECULE_SCALE_HEIGHT_M),
+    ] {
+        let line = format!("const {name}: f32 = {value:.1};");
+        assert!(source.contains(&line), "expected \"{line}\" in shared/sky.wgsl");
+    }
+}
