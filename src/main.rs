@@ -7,11 +7,14 @@
 
 mod args;
 mod failure;
+mod hud;
 mod moment;
+mod open_world;
 mod output;
 mod points;
 mod progress;
 mod report;
+mod scenery;
 mod values;
 mod verbs;
 
