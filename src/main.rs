@@ -7,6 +7,7 @@
 
 mod args;
 mod failure;
+mod gpu_proof;
 mod hud;
 mod moment;
 mod open_world;

@@ -15,8 +15,10 @@ use crate::shaders;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
 use terrain::block::mesh::TILE;
-use terrain::block::window::{Draw, Level, MAX_BLOCKS, Window};
-use terrain::{CELLS, Grid};
+use std::sync::Arc;
+use terrain::block::payload::Mesh;
+use terrain::block::window::{Draw, Level, MAX_BLOCKS, Upload, Window};
+use terrain::{BlockIndex, CELLS, Grid};
 
 /// How the ground is drawn; a change needs a new pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -228,6 +230,17 @@ impl Terrain {
             self.draws.resize(view_index + 1, Vec::new());
         }
         self.draws[view_index] = draws;
+    }
+
+    /// Draws a block of the first prepared view with another mesh, until the view is prepared again. For proofs: the slot
+    /// keeps the list, so the window must not draw it afterwards.
+    pub fn show_mesh(&mut self, gpu: &Gpu, block: BlockIndex, mesh: &Mesh) {
+        let indices = Arc::new(mesh.indices().clone());
+        let Some(draw) = self.draws.first_mut().and_then(|draws| draws.iter_mut().find(|d| d.block == block)) else {
+            return;
+        };
+        draw.level = Level::Own { indices: indices.len() as u32 };
+        self.textures.apply(&gpu.queue, &Upload::Indices { slot: draw.slot, indices });
     }
 
     /// Records a prepared view's ground; group 0 must be bound.
