@@ -20,6 +20,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{} ({}, {})", gpu.report.name, gpu.report.backend, gpu.report.kind);
     let target = Offscreen::new(&gpu, SIZE_PX)?;
 
+    let start = Instant::now();
+    let air = visual::sky::Air::new(60_000.0, 1_600.0);
+    let air_ms = start.elapsed().as_secs_f64() * 1e3;
+    let start = Instant::now();
+    let light = air.light(0.4, 3_000.0);
+    let light_ms = start.elapsed().as_secs_f64() * 1e3;
+    println!("air {air_ms:.1} ms, table of {} bytes {light_ms:.1} ms", light.table.len() * 2);
+
     let cases = [
         ("noon", 62.0_f64, 60_000.0, 3_000.0),
         ("afternoon", 25.0, 60_000.0, 3_000.0),

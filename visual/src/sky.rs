@@ -46,7 +46,7 @@ const AIR_M: f32 = 100_000.0;
 const HIGHEST_EYE_M: f32 = 60_000.0;
 const GROUND_ALBEDO: f32 = 0.3;
 /// Starlight and airglow, far above nature's so that a screen can show it.
-const NIGHT: Vec3 = Vec3::new(1.0e-6, 1.5e-6, 2.8e-6);
+const NIGHT: Vec3 = Vec3::new(2.4e-6, 3.5e-6, 6.5e-6);
 /// Sunlit ground is lit as seen from this far above the haze base, metres.
 const SURFACE_ABOVE_BASE_M: f32 = 1_000.0;
 
@@ -104,7 +104,7 @@ impl Air {
 
         let sun_irradiance = self.sunlight_at(surface_m, sun_sin);
         let sky_irradiance = self.sky_irradiance(surface_m, sun);
-        let exposure = exposure(sun_irradiance * sun_sin.max(0.25) + sky_irradiance);
+        let exposure = exposure(sun_irradiance * sun_sin.max(0.6) + sky_irradiance);
 
         let mut table = Vec::with_capacity((TABLE_WIDTH * TABLE_HEIGHT * 4) as usize);
         for row in 0..TABLE_HEIGHT {
@@ -292,7 +292,7 @@ pub fn molecules_at(height_m: f32) -> f32 {
 /// all, so night stays dark.
 pub fn exposure(irradiance: Vec3) -> f32 {
     let luminance = irradiance.dot(Vec3::new(0.2126, 0.7152, 0.0722)).max(1e-7);
-    3.3 * luminance.powf(-0.7)
+    3.1 * luminance.powf(-0.6)
 }
 
 fn rayleigh_phase(cosine: f32) -> f32 {
