@@ -1,1 +1,37 @@
-//! sim
+//! The small simulation under the picture: what flies, what the pilot commands, and time.
+//!
+//! This crate has no GPU and runs without a screen. State is f64 in the world's frame (X east, Y up, Z south, metres);
+//! a step has one fixed length; what a step gives depends only on the state and the commands before it, so two runs with
+//! the same inputs give the same [`Snapshot::hash`]. Bad input is refused at the edge ([`input`]), never stepped.
+//!
+//! The ground is a function of plan position, [`HeightAt`]: it answers `None` where there is no data.
+#![forbid(unsafe_code)]
+
+pub mod aircraft;
+pub mod atmosphere;
+pub mod clock;
+pub mod frame;
+pub mod ground_contact;
+pub mod input;
+pub mod integrate;
+pub mod run;
+pub mod slew;
+pub mod snapshot;
+pub mod track;
+pub mod utc;
+pub mod world;
+
+pub use aircraft::{AircraftState, Condition};
+pub use clock::Clock;
+pub use input::{Command, Controls};
+pub use run::{SimThread, lockstep};
+pub use snapshot::{Flags, Mode, Snapshot};
+pub use track::Track;
+pub use utc::UtcTime;
+pub use world::Scene;
+
+/// Ground height in metres above mean sea level over a plan point (x, z) of the world; `None` where there is no data.
+pub type HeightAt = dyn Fn(f64, f64) -> Option<f64> + Send + Sync;
+
+/// Lowest height of an aircraft's reference point over the ground, metres: its landing gear, without a model of one.
+pub const GEAR_HEIGHT_M: f64 = 2.0;

@@ -9,8 +9,8 @@
 
 use std::fmt;
 
-/// Cells along a block's side. Even, so that 2 x 2 cells make a sub-block.
-pub const CELLS: u32 = 30;
+/// Cells along a block's side. Even, so that 2 x 2 cells make a sub-block. Tests also run 32 (feature `cells32`).
+pub const CELLS: u32 = if cfg!(feature = "cells32") { 32 } else { 30 };
 
 /// Posts along a block's side.
 pub const POSTS: u32 = CELLS + 1;

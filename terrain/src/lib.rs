@@ -20,8 +20,9 @@ pub mod store;
 pub mod synthetic;
 pub mod verify;
 
+pub use block::rings::{RingMasks, Rings};
 pub use field::{Corner, Field, FieldError, Triangle};
 pub use grid::{BlockIndex, CELLS, Grid, GridError, POSTS, PostRect};
-
-
-
+pub use ground::{Area, AreaError, Ground, SurfaceHit};
+pub use pyramid::{Pyramid, Range};
+pub use projection::{Geodetic, Projection, ProjectionError};

@@ -146,6 +146,8 @@ impl Gpu {
         limits.max_storage_buffer_binding_size = able.max_storage_buffer_binding_size.min(128 << 20);
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("poligon"),
+            // Only for the wireframe; where it is missing, that overlay is.
+            required_features: adapter.features() & wgpu::Features::POLYGON_MODE_LINE,
             required_limits: limits,
             ..wgpu::DeviceDescriptor::default()
         };

@@ -7,6 +7,7 @@
 pub const SOURCES: &[(&str, &str)] = &[
     ("lines.wgsl", include_str!("../../shaders/lines.wgsl")),
     ("sky.wgsl", include_str!("../../shaders/sky.wgsl")),
+    ("terrain.wgsl", include_str!("../../shaders/terrain.wgsl")),
     ("upscale.wgsl", include_str!("../../shaders/upscale.wgsl")),
 ];
 
@@ -14,6 +15,7 @@ pub const SOURCES: &[(&str, &str)] = &[
 pub const SHARED: &[(&str, &str)] = &[
     ("shared/display.wgsl", include_str!("../../shaders/shared/display.wgsl")),
     ("shared/frame.wgsl", include_str!("../../shaders/shared/frame.wgsl")),
+    ("shared/posts.wgsl", include_str!("../../shaders/shared/posts.wgsl")),
     ("shared/sky.wgsl", include_str!("../../shaders/shared/sky.wgsl")),
 ];
 

@@ -1,1 +1,3 @@
 //! What lies on the ground.
+
+pub mod lakes;

@@ -1,1 +1,139 @@
-//! Where worlds are kept.
+//! Where worlds are kept: a folder `NAME.world`.
+//!
+//! - `world.toml`: what the world is ([`WorldInfo`]), with the length and CRC-32 of every other file
+//! - `heights.bin`: posts row by row, north first, each row from the west; f32 little-endian metres, NaN void
+//! - `lakes.json`: outlines in world metres and levels
+//! - `masks.bin`: the block masks of the rings, as [`crate::block`] packs them; absent if none were made
+//!
+//! A world is written to a folder beside its place and renamed into it, so a place holds a whole world or what it held
+//! before. Reading checks version, sizes and sums, so a world that reads is the one that was written.
+
+mod folder;
+mod info;
+mod masks;
+
+pub use folder::StoreError;
+pub use info::{Extent, FORMAT_VERSION, FileInfo, LakeInfo, Source, Statistics, Voids, WorldInfo};
+
+use crate::block::rings::{RingMasks, Rings};
+use crate::features::lakes::{Lake, Lakes};
+use crate::field::Field;
+use crate::grid::Grid;
+use crate::projection::{Geodetic, Projection};
+use folder::{read_checked, read_info, write_folder};
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::Arc;
+
+const HEIGHTS: &str = "heights.bin";
+const LAKES: &str = "lakes.json";
+const MASKS: &str = "masks.bin";
+
+/// A world in memory.
+#[derive(Debug, Clone)]
+pub struct World {
+    /// Its name, as `info.name`.
+    pub name: String,
+    /// Between its plane and the Earth.
+    pub projection: Projection,
+    /// Its ground.
+    pub field: Arc<Field>,
+    /// Its lakes.
+    pub lakes: Lakes,
+    /// The masks of its blocks, packed by [`crate::block`]; empty if none were made.
+    pub masks: Vec<u8>,
+    /// What `world.toml` says of it.
+    pub info: WorldInfo,
+}
+
+/// A lake as `lakes.json` has it.
+#[derive(Serialize, Deserialize)]
+struct StoredLake {
+    name: String,
+    level_m: f64,
+    /// World x and z, metres.
+    rings: Vec<Vec<[f64; 2]>>,
+}
+
+impl World {
+    /// Reads a world.
+    ///
+    /// # Errors
+    /// [`StoreError`] names the file that is missing, of another version or size, or damaged.
+    pub fn read(path: &Path) -> Result<Self, StoreError> {
+        let info = read_info(path)?;
+        let wrong = |expected: &str, found: String| StoreError::damaged(&path.join("world.toml"), expected, found);
+        let projection = Projection::new(Geodetic::from_degrees(info.centre_lat_deg, info.centre_lon_deg))
+            .map_err(|e| wrong("a centre", e.to_string()))?;
+        let grid = Grid {
+            west_m: info.extent.west_m,
+            north_m: info.extent.north_m,
+            step_m: info.step_m,
+            blocks_x: info.blocks_x,
+            blocks_z: info.blocks_z,
+        }
+        .checked()
+        .map_err(|e| wrong("a grid", e.to_string()))?;
+
+        let bytes = read_checked(path, &info, HEIGHTS, Some(4 * grid.posts() as u64))?;
+        let heights = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+        let field = Field::new(grid, heights)
+            .map_err(|e| StoreError::damaged(&path.join(HEIGHTS), "heights", e.to_string()))?;
+        let bytes = read_checked(path, &info, LAKES, None)?;
+        let lakes: Vec<StoredLake> = serde_json::from_slice(&bytes)
+            .map_err(|e| StoreError::damaged(&path.join(LAKES), "lakes", e.to_string()))?;
+        let masks = match info.file(MASKS) {
+            Some(_) => read_checked(path, &info, MASKS, None)?,
+            None => Vec::new(),
+        };
+        Ok(Self {
+            name: info.name.clone(),
+            projection,
+            field: Arc::new(field),
+            lakes: Lakes::new(lakes.into_iter().map(Lake::from).collect()),
+            masks,
+            info,
+        })
+    }
+
+    /// The masks that came with the world, if any did and they fit it.
+    pub fn ring_masks(&self) -> Option<RingMasks> {
+        masks::from_bytes(&self.masks, self.field.grid().blocks().count())
+    }
+
+    /// Makes the masks that belong to the world, for the long window at one pixel, to be written with it.
+    pub fn make_ring_masks(&mut self) {
+        let rings = Rings::new(self.field.grid(), 24, 1.0);
+        self.masks = masks::to_bytes(&RingMasks::new(&self.field, rings.limits_m));
+    }
+
+    /// Writes the world; what was there is replaced if it was a world.
+    ///
+    /// # Errors
+    /// [`StoreError`] if something else is there, or the disk refuses.
+    pub fn write(&self, path: &Path) -> Result<(), StoreError> {
+        let heights: Vec<u8> = self.field.heights_m().iter().flat_map(|h| h.to_le_bytes()).collect();
+        let lakes: Vec<StoredLake> = self.lakes.lakes().iter().map(StoredLake::from).collect();
+        let lakes = serde_json::to_vec(&lakes).map_err(|e| StoreError::io(path, e.into()))?;
+        let mut files = vec![(HEIGHTS, heights.as_slice()), (LAKES, lakes.as_slice())];
+        if !self.masks.is_empty() {
+            files.push((MASKS, &self.masks));
+        }
+        write_folder(path, &self.info, &files)
+    }
+}
+
+impl From<StoredLake> for Lake {
+    fn from(stored: StoredLake) -> Self {
+        let rings = stored.rings.into_iter().map(|ring| ring.into_iter().map(DVec2::from).collect()).collect();
+        Self { name: stored.name, level_m: stored.level_m, rings }
+    }
+}
+
+impl From<&Lake> for StoredLake {
+    fn from(lake: &Lake) -> Self {
+        let rings = lake.rings.iter().map(|ring| ring.iter().map(DVec2::to_array).collect()).collect();
+        Self { name: lake.name.clone(), level_m: lake.level_m, rings }
+    }
+}

@@ -1,7 +1,10 @@
 //! One file a pass, named as its shader. A pass owns its pipeline and buffers and has a plain `draw`.
 
+pub mod detail;
 pub mod lines;
 pub mod sky;
+pub mod terrain;
+pub mod terrain_textures;
 pub mod upscale;
 
 /// What a pipeline must know of the target that it draws to.

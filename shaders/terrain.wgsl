@@ -1,0 +1,164 @@
+// terrain.wgsl: draws blocks of ground. The vertex stage does the work.
+// Reads:  group 0 frame; group 1 the window: height, light and ground map textures, toroidal by slot; one detail texture.
+//         No vertex buffer: a vertex is its index among the block's posts, an instance is a slot.
+// Writes: display colour; reverse-Z depth, near / distance.
+// Host:   visual/src/passes/terrain.rs, visual/src/passes/terrain_textures.rs
+// Twin:   position and height: terrain::Field (bit-equal, `poligon verify`).
+// Invariant: a post's position is formed from whole-number differences, so neighbouring blocks agree on it to the bit.
+
+//!include "shared/frame.wgsl"
+//!include "shared/sky.wgsl"
+//!include "shared/display.wgsl"
+//!include "shared/posts.wgsl"
+
+// Texels along a block's ground map.
+const MAP_SIDE: f32 = 64.0;
+
+// How many of the detail texture's two scales are read: 0, 1 or 2.
+override DETAIL: u32 = 2u;
+// 1: tint by level.
+override OVERLAY: u32 = 0u;
+
+@group(1) @binding(3) var light_maps: texture_2d_array<f32>;
+@group(1) @binding(4) var ground_maps: texture_2d<f32>;
+@group(1) @binding(5) var detail_texture: texture_2d<f32>;
+@group(1) @binding(6) var map_sampler: sampler;
+@group(1) @binding(7) var detail_sampler: sampler;
+
+struct Surface {
+    @builtin(position) @invariant clip: vec4<f32>,
+    // Column and row in the block, in posts.
+    @location(0) local: vec2<f32>,
+    // Light scattered towards the eye, and the share of the ground's own light that arrives.
+    @location(1) haze: vec4<f32>,
+    // Slot's corner in the window, in blocks, and the level for the overlay.
+    @location(2) @interpolate(flat) slot: vec3<f32>,
+}
+
+struct WaterSurface {
+    @builtin(position) @invariant clip: vec4<f32>,
+    @location(0) local: vec2<f32>,
+    @location(1) haze: vec4<f32>,
+    @location(2) @interpolate(flat) slot: vec3<f32>,
+    @location(3) relative_m: vec3<f32>,
+    // Radiance of the sky mirrored in still water.
+    @location(4) mirrored: vec3<f32>,
+}
+
+@vertex
+fn terrain_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) slot: u32) -> Surface {
+    let post = post_of(index, slot);
+    var surface: Surface;
+    surface.clip = frame.clip_from_relative * vec4<f32>(post.relative_m, 1.0);
+    surface.local = vec2<f32>(post.local);
+    surface.haze = haze(post.relative_m);
+    surface.slot = vec3<f32>(vec2<f32>(post.slot), post.level);
+    return surface;
+}
+
+@vertex
+fn water_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) slot: u32) -> WaterSurface {
+    let post = post_of(index, slot);
+    var surface: WaterSurface;
+    surface.clip = frame.clip_from_relative * vec4<f32>(post.relative_m, 1.0);
+    surface.local = vec2<f32>(post.local);
+    surface.haze = haze(post.relative_m);
+    surface.slot = vec3<f32>(vec2<f32>(post.slot), post.level);
+    surface.relative_m = post.relative_m;
+    let direction = normalize(post.relative_m);
+    // Waves tilt the mirror, so even a grazing view sees sky a little above the horizon.
+    surface.mirrored = sky_radiance(normalize(vec3<f32>(direction.x, abs(direction.y) + 0.06, direction.z)));
+    return surface;
+}
+
+fn haze(relative_m: vec3<f32>) -> vec4<f32> {
+    let through = haze_from_eye(relative_m);
+    return vec4<f32>(sky_radiance(normalize(relative_m)) * (1.0 - through), through);
+}
+
+fn light_at(local: vec2<f32>, slot: vec2<f32>) -> vec4<f32> {
+    let texel = slot * f32(TILE) + local + 0.5;
+    return textureSampleLevel(light_maps, map_sampler, texel * window.light_texel, window.light_layer, 0.0);
+}
+
+fn map_at(local: vec2<f32>, slot: vec2<f32>) -> vec4<f32> {
+    let texel = slot * MAP_SIDE + local * ((MAP_SIDE - 1.0) / f32(TILE - 2u)) + 0.5;
+    return textureSampleLevel(ground_maps, map_sampler, texel * window.map_texel, 0.0);
+}
+
+// Radiance of ground of an albedo under sun and sky; `light` is a texel of the light map, `tilt` bends its normal.
+fn lit(albedo: vec3<f32>, light: vec4<f32>, tilt: vec2<f32>) -> vec3<f32> {
+    let plan = light.rg * 2.0 - 1.0 + tilt;
+    let normal = normalize(vec3<f32>(plan.x, sqrt(max(1.0 - dot(plan, plan), 0.01)), plan.y));
+    let sun = max(dot(normal, frame.sun_direction), 0.0) * light.b;
+    let sky = light.a * (0.5 + 0.5 * normal.y);
+    // What the sky does not reach is lit by other ground a little.
+    let bounced = 0.12 * (1.0 - sky) * max(frame.sun_direction.y, 0.0);
+    return albedo * (1.0 / 3.14159265) * (frame.sun_irradiance * (sun + bounced) + frame.sky_irradiance * sky);
+}
+
+@fragment
+fn terrain_fragment(surface: Surface) -> @location(0) vec4<f32> {
+    let light = light_at(surface.local, surface.slot.xy);
+    let map = map_at(surface.local, surface.slot.xy);
+    var albedo = map.rgb * map.rgb;
+    var tilt = vec2<f32>(0.0);
+    if DETAIL > 0u {
+        // Whole repeats a block, so that borders match.
+        let near = textureSample(detail_texture, detail_sampler, surface.local * (7.0 / f32(TILE - 2u)));
+        tilt = (near.rg - 0.5) * 0.30;
+        albedo = albedo * (0.55 + 0.9 * near.b);
+        if DETAIL > 1u {
+            let nearer = textureSample(detail_texture, detail_sampler, surface.local.yx * (53.0 / f32(TILE - 2u)));
+            tilt += (nearer.gr - 0.5) * 0.24;
+            albedo = albedo * (0.6 + 0.8 * nearer.a);
+        }
+    }
+    let colour = overlaid(lit(albedo, light, tilt), surface.slot.z);
+    return shown(colour, surface.haze, surface.clip.xy);
+}
+
+@fragment
+fn water_fragment(surface: WaterSurface) -> @location(0) vec4<f32> {
+    let light = light_at(surface.local, surface.slot.xy);
+    let map = map_at(surface.local, surface.slot.xy);
+    // The shore line between texels, about as wide as a pixel.
+    let wet = smoothstep(0.49, 0.51, map.a);
+    let ripple_at = surface.local * (60.0 / f32(TILE - 2u)) + vec2<f32>(frame.time_s * 0.004, frame.time_s * 0.0027);
+    let near = textureSample(detail_texture, detail_sampler, ripple_at);
+    let ground = lit(map.rgb * map.rgb * mix(0.55 + 0.9 * near.b, 1.0, wet), light, (near.rg - 0.5) * 0.3 * (1.0 - wet));
+
+    let distance_m = length(surface.relative_m);
+    let to_eye = surface.relative_m * (-1.0 / distance_m);
+    let tilt = (near.rg - 0.5) * 0.16;
+    let normal = normalize(vec3<f32>(tilt.x, 1.0, tilt.y));
+    let facing = clamp(dot(normal, to_eye), 0.0, 1.0);
+    // Schlick, water's 2 % face on; waves keep it from becoming a perfect mirror at the horizon.
+    let out = 1.0 - facing;
+    let fresnel = 0.02 + 0.62 * (out * out) * (out * out) * out;
+    let half_way = normalize(to_eye + frame.sun_direction);
+    let spread = max(dot(normal, half_way), 0.0);
+    // Slopes of a light breeze: a narrow lobe, drawn out towards the sun by the grazing view itself.
+    let glint = pow(spread, 380.0) * 9.0 * step(0.0, frame.sun_direction.y) * light.b;
+    let water = ground * (1.0 - fresnel) + surface.mirrored * fresnel + frame.sun_irradiance * (glint * (0.04 + fresnel));
+    let colour = overlaid(mix(ground, water, wet), surface.slot.z);
+    return shown(colour, surface.haze, surface.clip.xy);
+}
+
+fn overlaid(colour: vec3<f32>, level: f32) -> vec3<f32> {
+    if OVERLAY == 0u {
+        return colour;
+    }
+    // Level 0 green, level 1 blue, mixed orange.
+    var tint = vec3<f32>(0.1, 0.7, 0.2);
+    if level > 1.5 {
+        tint = vec3<f32>(0.9, 0.45, 0.05);
+    } else if level > 0.5 {
+        tint = vec3<f32>(0.1, 0.25, 0.9);
+    }
+    return mix(colour, tint * (0.15 + dot(colour, vec3<f32>(0.3, 0.6, 0.1))), 0.6);
+}
+
+fn shown(colour: vec3<f32>, haze: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
+    return vec4<f32>(dither(display(colour * haze.a + haze.rgb), pixel), 1.0);
+}

@@ -1,0 +1,165 @@
+//! Sticks, throttles and gamepads of the system, read by gilrs and bound by [`super::bindings`].
+//!
+//! A HOTAS throttle lies outside gilrs' gamepad set and arrives as an unknown axis, so a stick is bound by raw code and
+//! by vendor and product. What gilrs knows as a gamepad is bound by gilrs' own axes.
+
+use super::bindings::{Bindings, DEFAULT_PROFILES, Target};
+use super::{Command, Curve, ViewLook};
+use gilrs::{Axis, Button, Event, EventType, GamepadId, Gilrs, GilrsBuilder};
+use std::collections::HashMap;
+use std::fmt;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Faulty events after which sticks are no longer read.
+const MOST_FAULTS: u32 = 8;
+
+/// Why there is no joystick input at all. One stick less is no error.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct JoystickError(String);
+
+impl fmt::Display for JoystickError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "expected an input system that lists joysticks, found none: {}", self.0)
+    }
+}
+
+impl std::error::Error for JoystickError {}
+
+/// The system's sticks.
+pub struct Joystick {
+    gilrs: Gilrs,
+    bindings: Bindings,
+    is_gamepad: HashMap<usize, bool>,
+    faults: u32,
+}
+
+impl Joystick {
+    /// Opens the system's input devices; more may come and go later.
+    ///
+    /// # Errors
+    /// [`JoystickError`] if the system has no such input at all.
+    pub fn open() -> Result<Self, JoystickError> {
+        // Dead zones are ours, by axis: gilrs' own would be applied on top.
+        let gilrs = GilrsBuilder::new().with_default_filters(false).build();
+        let gilrs = gilrs.map_err(|error| JoystickError(error.to_string()))?;
+        let mut joystick = Self { gilrs, bindings: Bindings::default(), is_gamepad: HashMap::new(), faults: 0 };
+        let present: Vec<GamepadId> = joystick.gilrs.gamepads().map(|(id, _)| id).collect();
+        for id in present {
+            joystick.connect(id);
+        }
+        Ok(joystick)
+    }
+
+    /// Axes and devices.
+    pub fn bindings(&self) -> &Bindings {
+        &self.bindings
+    }
+
+    /// Names of the connected devices with vendor and product.
+    pub fn devices(&self) -> Vec<String> {
+        let id = |v: Option<u16>| v.map_or("????".to_owned(), |v| format!("{v:04x}"));
+        let pads = self.gilrs.gamepads();
+        pads.map(|(_, pad)| format!("{} ({}:{})", pad.os_name(), id(pad.vendor_id()), id(pad.product_id()))).collect()
+    }
+
+    /// Takes in what happened since the last call and gives its commands. At most 1,000 events a call: a device that
+    /// floods must not hold the caller.
+    pub fn poll(&mut self) -> Vec<Command> {
+        let mut commands = Vec::new();
+        for _ in 0..1_000 {
+            let Some(event) = self.next_event() else { break };
+            let device = usize::from(event.id);
+            let gamepad = self.is_gamepad.get(&device).copied().unwrap_or(false);
+            let command = match event.event {
+                EventType::Connected => {
+                    self.connect(event.id);
+                    None
+                }
+                EventType::Disconnected => self.bindings.disconnected(device),
+                EventType::AxisChanged(axis, value, code) => match gamepad_axis(axis).filter(|_| gamepad) {
+                    Some((target, curve)) => self.bindings.move_target(device, target, curve, f64::from(value)),
+                    None => {
+                        let raw = raw_axis(axis, f64::from(value));
+                        self.bindings.axis(device, code.into_u32(), raw)
+                    }
+                },
+                EventType::ButtonPressed(button, _) if gamepad => gamepad_button(button),
+                EventType::ButtonPressed(_, code) => self.bindings.button(device, code.into_u32(), true),
+                EventType::ButtonReleased(_, code) if !gamepad => self.bindings.button(device, code.into_u32(), false),
+                // A gamepad's triggers are buttons with a value: right opens the throttle, left closes it.
+                EventType::ButtonChanged(Button::RightTrigger2, value, _) if gamepad => {
+                    self.bindings.move_target(device, Target::Throttle, Curve::STRAIGHT, f64::from(value))
+                }
+                EventType::ButtonChanged(Button::LeftTrigger2, value, _) if gamepad => {
+                    self.bindings.move_target(device, Target::Throttle, Curve::STRAIGHT, -f64::from(value))
+                }
+                _ => None,
+            };
+            commands.extend(command);
+        }
+        commands
+    }
+
+    /// The next event. gilrs 0.11 panics where a device sends an axis that it had not announced; the event is lost and
+    /// the rest goes on, until a device does it too often.
+    fn next_event(&mut self) -> Option<Event> {
+        while self.faults < MOST_FAULTS {
+            let gilrs = &mut self.gilrs;
+            match catch_unwind(AssertUnwindSafe(|| gilrs.next_event())) {
+                Ok(event) => return event,
+                Err(_) => self.faults += 1,
+            }
+        }
+        self.bindings.disconnect_all();
+        None
+    }
+
+    fn connect(&mut self, id: GamepadId) {
+        let Some(pad) = self.gilrs.connected_gamepad(id) else { return };
+        let vendor_product = pad.vendor_id().zip(pad.product_id());
+        let bound = DEFAULT_PROFILES.iter().any(|p| p.device.is_some() && p.device == vendor_product);
+        let thumb_sticks = pad.axis_code(Axis::RightStickX).is_some() && pad.button_code(Button::South).is_some();
+        self.is_gamepad.insert(usize::from(id), thumb_sticks && !bound);
+        self.bindings.connected(usize::from(id), vendor_product);
+    }
+}
+
+/// gilrs turns Y axes round so that up is positive; undone, so that a raw code has its raw direction.
+fn raw_axis(axis: Axis, value: f64) -> f64 {
+    if cfg!(target_os = "linux") && matches!(axis, Axis::LeftStickY | Axis::RightStickY | Axis::DPadY) {
+        -value
+    } else {
+        value
+    }
+}
+
+/// A gamepad's axes: left stick flies, right stick is the pedals. gilrs gives up as positive.
+fn gamepad_axis(axis: Axis) -> Option<(Target, Curve)> {
+    let curve = |inverted| Curve { dead_zone: 0.12, softness: 0.5, inverted };
+    match axis {
+        Axis::LeftStickX => Some((Target::Roll, curve(false))),
+        Axis::LeftStickY => Some((Target::Pitch, curve(true))),
+        Axis::RightStickX => Some((Target::Yaw, curve(false))),
+        Axis::DPadX => Some((Target::LookSide, curve(false))),
+        Axis::DPadY => Some((Target::LookUp, curve(false))),
+        _ => None,
+    }
+}
+
+fn gamepad_button(button: Button) -> Option<Command> {
+    match button {
+        Button::Start => Some(Command::Pause),
+        Button::Select => Some(Command::Reset),
+        Button::North => Some(Command::Slew),
+        Button::West => Some(Command::Hud),
+        Button::East => Some(Command::Track),
+        Button::South => Some(Command::Screenshot),
+        Button::LeftTrigger => Some(Command::TimeBack),
+        Button::RightTrigger => Some(Command::TimeForward),
+        Button::DPadLeft => Some(Command::Look(ViewLook::Left)),
+        Button::DPadRight => Some(Command::Look(ViewLook::Right)),
+        Button::DPadUp => Some(Command::Look(ViewLook::Up)),
+        Button::DPadDown => Some(Command::Look(ViewLook::Down)),
+        _ => None,
+    }
+}

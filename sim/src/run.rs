@@ -1,0 +1,212 @@
+//! Who drives the scene: a thread against the wall clock, or the caller step by step.
+//!
+//! [`lockstep`] takes steps as fast as they come and is deterministic. [`SimThread`] follows the wall clock on a thread
+//! of its own and publishes the last two snapshots; the caller interpolates between them and is never waited for, so a
+//! renderer that stalls costs the simulation nothing. A simulation that stalls is slowed ([`crate::clock`]).
+
+use crate::aircraft::AircraftState;
+use crate::input::{Command, Controls};
+use crate::snapshot::Snapshot;
+use crate::track::Track;
+use crate::utc::UtcTime;
+use crate::world::Scene;
+use crate::{HeightAt, clock::MAX_FRAME_S};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// Takes `steps` steps and gives the scene as it stands then. A paused scene takes none.
+pub fn lockstep(scene: &mut Scene, height_at: &HeightAt, steps: u32) -> Arc<Snapshot> {
+    if scene.clock.paused() {
+        scene.look_down(height_at);
+    } else {
+        for _ in 0..steps {
+            scene.step(height_at);
+        }
+    }
+    Arc::new(scene.snapshot())
+}
+
+/// What can be told to a running simulation.
+pub enum Message {
+    /// What the pilot commands from now on.
+    Controls(Controls),
+    /// A discrete command.
+    Command(Command),
+    /// Date and time of day.
+    Date(UtcTime),
+    /// How fast the date runs against the simulation.
+    DayRate(f64),
+    /// Puts the aircraft into a state.
+    Place(Box<AircraftState>),
+    /// Gives it a track to fly.
+    Track(Box<Track>),
+    /// Moves along the track to a distance, metres.
+    SeekTrack(f64),
+    /// Another ground.
+    Ground(Arc<HeightAt>),
+    /// Ends the thread.
+    Stop,
+}
+
+/// The last two snapshots and when the later one was due.
+struct Published {
+    before: Arc<Snapshot>,
+    last: Arc<Snapshot>,
+    /// Part of a step that wall time was ahead of `last` at `at`.
+    fraction: f64,
+    at: Instant,
+}
+
+/// The simulation on a thread of its own.
+pub struct SimThread {
+    messages: Sender<Message>,
+    published: Arc<Mutex<Published>>,
+    thread: Option<JoinHandle<Scene>>,
+    step_s: f64,
+}
+
+/// The thread is gone because it failed; what it said.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SimStopped(pub String);
+
+impl std::fmt::Display for SimStopped {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "the simulation stopped: {}", self.0)
+    }
+}
+
+impl std::error::Error for SimStopped {}
+
+impl SimThread {
+    /// Starts a scene on the wall clock.
+    ///
+    /// # Errors
+    /// The system's, if it gives no thread.
+    pub fn start(mut scene: Scene, height_at: Arc<HeightAt>) -> std::io::Result<Self> {
+        scene.look_down(&*height_at);
+        let first = Arc::new(scene.snapshot());
+        let published = Published { before: first.clone(), last: first, fraction: 0.0, at: Instant::now() };
+        let published = Arc::new(Mutex::new(published));
+        let (messages, inbox) = channel();
+        let step_s = scene.clock.step_s();
+        let shared = published.clone();
+        let builder = std::thread::Builder::new().name("simulation".to_owned());
+        let thread = builder.spawn(move || drive(scene, height_at, &inbox, &shared))?;
+        Ok(Self { messages, published, thread: Some(thread), step_s })
+    }
+
+    /// Tells the simulation something; false if it no longer runs.
+    pub fn send(&self, message: Message) -> bool {
+        self.messages.send(message).is_ok()
+    }
+
+    /// Whether it still runs.
+    pub fn is_running(&self) -> bool {
+        self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
+    }
+
+    /// The last two snapshots.
+    pub fn last_two(&self) -> (Arc<Snapshot>, Arc<Snapshot>) {
+        let published = locked(&self.published);
+        (published.before.clone(), published.last.clone())
+    }
+
+    /// The scene now: between the last two snapshots, one step behind the wall clock, so that it never guesses ahead.
+    pub fn now(&self) -> Snapshot {
+        let (before, last, part) = {
+            let published = locked(&self.published);
+            let since_s = published.at.elapsed().as_secs_f64() * published.last.rate;
+            (published.before.clone(), published.last.clone(), published.fraction + since_s / self.step_s)
+        };
+        Snapshot::interpolate(&before, &last, part)
+    }
+
+    /// Ends the simulation and gives its scene back.
+    ///
+    /// # Errors
+    /// [`SimStopped`] if it had failed.
+    pub fn stop(mut self) -> Result<Scene, SimStopped> {
+        self.send(Message::Stop);
+        let thread = self.thread.take().ok_or_else(|| SimStopped("it was stopped before".to_owned()))?;
+        thread.join().map_err(|panic| {
+            let said = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
+            let said = said.or_else(|| panic.downcast_ref::<String>().cloned());
+            SimStopped(said.unwrap_or_else(|| "no reason given".to_owned()))
+        })
+    }
+}
+
+impl Drop for SimThread {
+    fn drop(&mut self) {
+        self.send(Message::Stop);
+        if let Some(thread) = self.thread.take() {
+            // Nobody is left to be told of a failure.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The published pair; a panic while it was held cannot have left it half written.
+fn locked(published: &Mutex<Published>) -> MutexGuard<'_, Published> {
+    published.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn drive(
+    mut scene: Scene,
+    mut height_at: Arc<HeightAt>,
+    inbox: &Receiver<Message>,
+    shared: &Mutex<Published>,
+) -> Scene {
+    let mut then = Instant::now();
+    loop {
+        let step_s = scene.clock.step_s() / scene.clock.rate();
+        let wait_s = if scene.clock.paused() { 0.02 } else { (1.0 - scene.clock.fraction()) * step_s };
+        let mut changed = false;
+        // Sleep until a step is due; a message ends the sleep.
+        let mut next = match inbox.recv_timeout(Duration::from_secs_f64(wait_s.clamp(0.0, MAX_FRAME_S))) {
+            Ok(message) => Some(message),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => return scene,
+        };
+        while let Some(message) = next {
+            match message {
+                Message::Controls(controls) => scene.set_controls(controls),
+                Message::Command(command) => scene.command(command),
+                Message::Date(date) => scene.clock.set_date(date),
+                Message::DayRate(rate) => scene.clock.set_day_rate(rate),
+                Message::Place(state) => scene.place(*state),
+                Message::Track(track) => scene.fly_track(*track),
+                Message::SeekTrack(distance_m) => scene.seek_track(distance_m),
+                Message::Ground(ground) => height_at = ground,
+                Message::Stop => return scene,
+            }
+            changed = true;
+            next = inbox.try_recv().ok();
+        }
+        let now = Instant::now();
+        let due = scene.clock.advance(now.duration_since(then).as_secs_f64());
+        then = now;
+        if due == 0 {
+            if changed && scene.clock.paused() {
+                scene.look_down(&*height_at);
+                let snapshot = Arc::new(scene.snapshot());
+                let mut published = locked(shared);
+                (published.before, published.last) = (snapshot.clone(), snapshot);
+            }
+            continue;
+        }
+        let mut before = None;
+        for _ in 0..due {
+            before = Some(scene.snapshot());
+            scene.step(&*height_at);
+        }
+        let last = Arc::new(scene.snapshot());
+        let mut published = locked(shared);
+        published.before = before.map_or_else(|| last.clone(), Arc::new);
+        published.last = last;
+        published.fraction = scene.clock.fraction();
+        published.at = now;
+    }
+}

@@ -1,0 +1,43 @@
+//! A world from its folder, or the embedded one, ready to be asked and drawn.
+
+use crate::failure::Failure;
+use crate::output;
+use crate::progress::Progress;
+use std::path::Path;
+use std::sync::Arc;
+use terrain::block::ground_map::Climate;
+use terrain::block::{Landscape, Rings};
+use terrain::store::World;
+use terrain::{Ground, RingMasks};
+
+/// The world in a folder; without one the embedded Issyk-Kul world, baked on first use.
+///
+/// # Errors
+/// [`Failure::Failed`] if the folder is no world, or the embedded one cannot be baked.
+pub fn open(path: Option<&Path>) -> Result<World, Failure> {
+    if let Some(path) = path {
+        return World::read(path).map_err(|error| Failure::while_doing("reading the world", error));
+    }
+    let bar = Progress::new("baking the default world, once");
+    let default = terrain::bake::default_world(&mut |_, share| bar.show(share.into()))
+        .map_err(|error| Failure::while_doing("baking the default world", error))?;
+    drop(bar);
+    if let Err(reason) = &default.kept {
+        output::tell(format_args!("poligon: {reason}"));
+    }
+    Ok(default.world)
+}
+
+/// All that blocks are made from, with masks for the limits of `rings`.
+pub fn landscape(world: &World, rings: &Rings) -> Arc<Landscape> {
+    let masks = world
+        .ring_masks()
+        .filter(|masks| masks.limits_m == rings.limits_m)
+        .unwrap_or_else(|| RingMasks::new(&world.field, rings.limits_m));
+    Arc::new(Landscape {
+        ground: Ground::new(world.field.clone()),
+        lakes: Arc::new(world.lakes.clone()),
+        climate: Climate::new(world.projection.centre().lat_rad, world.info.statistics.mean_m),
+        masks,
+    })
+}

@@ -1,0 +1,253 @@
+//! A world on one device, ready for pictures: window of blocks, renderer, sun. Used by every verb that draws.
+//!
+//! What a picture shows is decided here once, from flags and presets, so a window, a headless flight, a shot and a proof
+//! of the same view are the same picture.
+
+use crate::args::ViewArgs;
+use crate::failure::Failure;
+use crate::moment::Moment;
+use crate::open_world;
+use crate::values::{Overlay, Quality};
+use glam::{DQuat, DVec2, DVec3};
+use std::sync::Arc;
+use terrain::block::Rings;
+use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
+use terrain::store::World;
+use terrain::{Area, Geodetic};
+use visual::camera::View;
+use visual::gpu::AdapterKind;
+use visual::passes::lines::Stroke;
+use visual::passes::terrain::{Terrain, TerrainLook};
+use visual::{Frame, Gpu, Renderer, Scene};
+
+/// Everything that decides a picture but the eye and the time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Look {
+    /// Size, pixels.
+    pub size_px: [u32; 2],
+    /// Vertical field of view, radians.
+    pub fov_y_rad: f64,
+    /// How far one sees, metres, as asked for.
+    pub visibility_m: Option<f64>,
+    /// Blocks along a side of the window.
+    pub window: u32,
+    /// Largest error on screen, pixels of the reference view.
+    pub limit_px: f64,
+    /// The near radius asked for, metres; the window's own choice if none.
+    pub near_radius_m: Option<f64>,
+    /// Every block at level 0.
+    pub all_level_0: bool,
+    /// Samples a pixel.
+    pub msaa: u32,
+    /// Pixels drawn for one shown, along a side.
+    pub render_scale: f32,
+    /// How the ground is drawn.
+    pub ground: TerrainLook,
+    /// Wait for every block and every sky table.
+    pub wait: bool,
+    /// Keep depth for reading back.
+    pub keep_depth: bool,
+}
+
+impl Look {
+    /// From flags; what is not given comes from the preset, and that from the adapter.
+    pub fn of(args: &ViewArgs, adapter: AdapterKind, wait: bool) -> Self {
+        let quality = args.quality.unwrap_or(match adapter {
+            AdapterKind::Hardware => Quality::Fine,
+            AdapterKind::Software => Quality::Standard,
+        });
+        let (window, msaa, render_scale, detail) = match quality {
+            Quality::Fine => (24, 4, 1.0, 2),
+            Quality::Standard => (24, 1, 1.0, 1),
+            Quality::Software => (12, 1, 0.67, 0),
+        };
+        Self {
+            size_px: [args.size.width_px, args.size.height_px],
+            fov_y_rad: args.fov_y_deg.to_radians(),
+            visibility_m: args.visibility_m,
+            window: args.window.unwrap_or(window),
+            limit_px: 1.0,
+            near_radius_m: None,
+            all_level_0: args.all_level_0,
+            msaa: args.msaa.unwrap_or(msaa),
+            render_scale: args.render_scale.map_or(render_scale, |scale| scale as f32),
+            ground: TerrainLook { detail, overlay: args.overlay == Some(Overlay::Blocks), wireframe: false },
+            wait,
+            keep_depth: false,
+        }
+    }
+
+    /// The rings that this look has in a world.
+    pub fn rings(&self, world: &World) -> Rings {
+        if self.all_level_0 {
+            return Rings::all_level_0();
+        }
+        match self.near_radius_m {
+            Some(near_m) => Rings::with_near_radius(near_m, self.limit_px),
+            None => Rings::new(world.field.grid(), self.window, self.limit_px),
+        }
+    }
+}
+
+/// See the module.
+pub struct Scenery {
+    /// The device.
+    pub gpu: Gpu,
+    /// The world.
+    pub world: Arc<World>,
+    /// Its ground.
+    pub area: Area,
+    /// What pictures look like.
+    pub look: Look,
+    /// The ground on the device.
+    pub terrain: Terrain,
+    renderer: Renderer,
+}
+
+impl Scenery {
+    /// Prepares a world for pictures into targets of a colour format.
+    pub fn new(gpu: Gpu, format: visual::TextureFormat, world: Arc<World>, look: Look) -> Self {
+        let rings = look.rings(&world);
+        let landscape = open_world::landscape(&world, &rings);
+        let area = landscape.ground.whole();
+        let settings = WindowSettings {
+            blocks: look.window,
+            rings,
+            budget_bytes: BUDGET_BYTES,
+            wait: look.wait,
+            threads: std::thread::available_parallelism().map_or(1, |cores| cores.get().saturating_sub(1).clamp(1, 4)),
+        };
+        let renderer = Renderer::new(
+            &gpu,
+            format,
+            visual::Settings {
+                msaa: look.msaa,
+                render_scale: look.render_scale,
+                keep_depth: look.keep_depth,
+                sky_in_background: !look.wait,
+            },
+        );
+        let window = Window::new(landscape, settings, DVec3::Y);
+        let terrain = Terrain::new(&gpu, renderer.frame_layout(), renderer.scene_format(), window, look.ground);
+        Self { gpu, world, area, look, terrain, renderer }
+    }
+
+    /// Visibility drawn: as asked, clamped to what the window guarantees, metres.
+    pub fn visibility_m(&self) -> f64 {
+        let most_m = self.terrain.window().view_range_min_m();
+        self.look.visibility_m.map_or(most_m, |asked_m| asked_m.min(most_m))
+    }
+
+    /// Depth of the last picture, if it was kept.
+    pub fn depth(&self) -> Option<&visual::Texture> {
+        self.renderer.depth(0)
+    }
+
+    /// Towards the sun at a moment over the world's centre, world frame.
+    ///
+    /// # Errors
+    /// [`Failure::Failed`] where the position is not known.
+    pub fn to_sun(&self, at: Moment) -> Result<DVec3, Failure> {
+        to_sun(&self.world, at)
+    }
+
+    /// Changes how the ground is drawn.
+    pub fn set_ground_look(&mut self, ground: TerrainLook) {
+        self.look.ground = ground;
+        self.terrain.set_look(&self.gpu, self.renderer.frame_layout(), ground);
+    }
+
+    /// The view of an eye that looks along an attitude (view axes to world).
+    pub fn view(&self, eye_m: DVec3, attitude: DQuat, size_px: [u32; 2]) -> View {
+        View::fov_y(eye_m, attitude, self.look.fov_y_rad, size_px)
+    }
+
+    /// Streams, culls: all that the render thread does for the ground before it draws.
+    pub fn follow(&mut self, view: &View, speed_mps: f64, to_sun: DVec3) {
+        self.terrain.follow(&self.gpu, view.eye_m, speed_mps, to_sun);
+        self.terrain.prepare(&self.gpu, 0, view);
+    }
+
+    /// Draws what was last followed, with strokes over it.
+    ///
+    /// # Errors
+    /// What the device reports.
+    pub fn draw(
+        &mut self,
+        view: &View,
+        to_sun: DVec3,
+        time_s: f64,
+        hud: Vec<Stroke>,
+        target: &visual::TextureView,
+    ) -> Result<(), visual::GpuError> {
+        let statistics = &self.world.info.statistics;
+        let scene = Scene {
+            sun_direction: to_sun,
+            visibility_m: self.visibility_m(),
+            haze_base_m: statistics.min_m.max(0.0),
+            view_range_m: self.terrain.window().view_range_min_m(),
+            exposure: 1.0,
+            time_s,
+        };
+        let frame = Frame { scene, views: vec![*view], hud };
+        let terrain = &self.terrain;
+        self.renderer.render(&self.gpu, &frame, &[target], |about, pass| terrain.draw(about.index, pass))
+    }
+}
+
+/// Towards the sun at a moment over a world's centre, world frame.
+///
+/// # Errors
+/// [`Failure::Failed`] where the position is not known.
+pub fn to_sun(world: &World, at: Moment) -> Result<DVec3, Failure> {
+    let centre = world.projection.centre();
+    let sun = visual::sun::position(at.unix_s, centre.lat_deg(), centre.lon_deg())
+        .map_err(|error| Failure::while_doing("placing the sun", error))?;
+    // At the centre grid north is true north.
+    Ok(terrain::frame::direction(sun.true_azimuth_rad, sun.elevation_rad))
+}
+
+/// World position of a place a person named.
+///
+/// # Errors
+/// [`Failure::Failed`] for a height above ground where there is none.
+pub fn position(world: &World, area: &Area, place: crate::values::Place) -> Result<DVec3, Failure> {
+    use crate::values::Altitude;
+    let DVec2 { x, y: z } = world.projection.to_world(Geodetic::from_degrees(place.lat_deg, place.lon_deg));
+    let height_m = match place.altitude {
+        Altitude::SeaLevelM(height_m) => height_m,
+        Altitude::GroundM(above_m) => {
+            above_m
+                + area.height_m(x, z).ok_or_else(|| {
+                    Failure::Failed(format!(
+                        "a height above ground needs ground: this world has none at {}, {}",
+                        place.lat_deg, place.lon_deg
+                    ))
+                })?
+        }
+    };
+    Ok(DVec3::new(x, height_m, z))
+}
+
+/// Grid heading of a true one at a world position, radians.
+pub fn grid_heading_rad(world: &World, at: DVec3, true_heading_rad: f64) -> f64 {
+    true_heading_rad - convergence_rad(world, at)
+}
+
+/// True heading of a grid one at a world position, radians.
+pub fn true_heading_rad(world: &World, at: DVec3, grid_heading_rad: f64) -> f64 {
+    grid_heading_rad + convergence_rad(world, at)
+}
+
+fn convergence_rad(world: &World, at: DVec3) -> f64 {
+    let place = world.projection.to_geodetic(DVec2::new(at.x, at.z));
+    let turn = world.projection.grid_convergence_rad(place);
+    if turn.is_finite() { turn } else { 0.0 }
+}
+
+/// The moment a picture shows where none was asked for: mid-morning at the world's centre in summer.
+pub fn default_moment(world: &World) -> Moment {
+    // 2026-06-21T00:00Z, then half past nine local solar time.
+    let noon_offset_s = -world.projection.centre().lon_deg() / 360.0 * 86_400.0;
+    Moment { unix_s: 1_782_000_000.0 + 9.0 * 3600.0 + noon_offset_s }
+}

@@ -1,0 +1,190 @@
+//! A small pool of threads that makes payloads, meshes and light maps, nearest first.
+//!
+//! The render thread asks and collects; it never waits unless it wants to (lockstep). A request that is no longer wanted
+//! is withdrawn before its turn comes.
+
+use super::payload::{Landscape, Mesh, Payload};
+use crate::block::light;
+use crate::grid::BlockIndex;
+use glam::DVec3;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError, mpsc};
+use std::thread::JoinHandle;
+use std::time::Instant;
+
+/// What to make.
+#[allow(missing_docs, reason = "the fields say themselves what they are")]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Job {
+    /// A block's payload, lit from a direction.
+    Payload { block: BlockIndex, to_sun: DVec3 },
+    /// A block's mesh for a ring.
+    Mesh { block: BlockIndex, ring: usize },
+    /// A block's light map for another sun.
+    Light { block: BlockIndex, to_sun: DVec3 },
+}
+
+/// What was made.
+#[allow(missing_docs, reason = "the fields say themselves what they are")]
+#[derive(Debug)]
+pub enum Built {
+    /// See [`Job::Payload`].
+    Payload(Box<Payload>),
+    /// See [`Job::Mesh`].
+    Mesh { block: BlockIndex, ring: usize, mesh: Mesh },
+    /// See [`Job::Light`].
+    Light { block: BlockIndex, to_sun: DVec3, light: Box<[u8]> },
+}
+
+/// See the module.
+pub struct Builder {
+    shared: Arc<Shared>,
+    results: mpsc::Receiver<Built>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+struct Shared {
+    queue: Mutex<Queue>,
+    wake: Condvar,
+    /// Thread time spent making things, nanoseconds: sum and worst.
+    spent_ns: AtomicU64,
+    worst_ns: AtomicU64,
+    made: AtomicU64,
+}
+
+#[derive(Default)]
+struct Queue {
+    /// Distance in metres and job; the nearest is last.
+    jobs: Vec<(f64, Job)>,
+    sorted: bool,
+    closed: bool,
+}
+
+/// What building has cost so far.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BuildCost {
+    /// Things made.
+    pub made: u64,
+    /// Mean time to make one, milliseconds.
+    pub mean_ms: f64,
+    /// Longest, milliseconds.
+    pub max_ms: f64,
+}
+
+impl Builder {
+    /// Starts `threads` builders (at least one) on a landscape.
+    pub fn new(landscape: Arc<Landscape>, threads: usize) -> Self {
+        let shared = Arc::new(Shared {
+            queue: Mutex::default(),
+            wake: Condvar::new(),
+            spent_ns: AtomicU64::new(0),
+            worst_ns: AtomicU64::new(0),
+            made: AtomicU64::new(0),
+        });
+        let (sender, results) = mpsc::channel();
+        let threads = (0..threads.max(1))
+            .map(|_| {
+                let (landscape, shared, sender) = (landscape.clone(), shared.clone(), sender.clone());
+                std::thread::spawn(move || work(&landscape, &shared, &sender))
+            })
+            .collect();
+        Self { shared, results, threads }
+    }
+
+    /// Asks for jobs, each with its distance from the eye in metres.
+    pub fn request(&self, jobs: impl IntoIterator<Item = (f64, Job)>) {
+        let mut queue = self.shared.queue.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = queue.jobs.len();
+        queue.jobs.extend(jobs);
+        if queue.jobs.len() > before {
+            queue.sorted = false;
+            self.shared.wake.notify_all();
+        }
+    }
+
+    /// Withdraws the waiting jobs that are no longer wanted; says which.
+    pub fn withdraw(&self, mut unwanted: impl FnMut(&Job) -> bool) -> Vec<Job> {
+        let mut queue = self.shared.queue.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut gone = Vec::new();
+        queue.jobs.retain(|(_, job)| {
+            let leave = unwanted(job);
+            if leave {
+                gone.push(*job);
+            }
+            !leave
+        });
+        gone
+    }
+
+    /// The next thing made, if one is ready.
+    pub fn try_take(&self) -> Option<Built> {
+        self.results.try_recv().ok()
+    }
+
+    /// The next thing made; waits for it. `None` if no thread is left.
+    pub fn wait(&self) -> Option<Built> {
+        self.results.recv().ok()
+    }
+
+    /// What building has cost.
+    pub fn cost(&self) -> BuildCost {
+        let made = self.shared.made.load(Ordering::Relaxed);
+        let ms = |ns: &AtomicU64| ns.load(Ordering::Relaxed) as f64 * 1e-6;
+        BuildCost { made, mean_ms: ms(&self.shared.spent_ns) / made.max(1) as f64, max_ms: ms(&self.shared.worst_ns) }
+    }
+}
+
+impl Drop for Builder {
+    fn drop(&mut self) {
+        let mut queue = self.shared.queue.lock().unwrap_or_else(PoisonError::into_inner);
+        queue.closed = true;
+        queue.jobs.clear();
+        drop(queue);
+        self.shared.wake.notify_all();
+        for thread in self.threads.drain(..) {
+            let _ = thread.join();
+        }
+    }
+}
+
+fn work(landscape: &Landscape, shared: &Shared, results: &mpsc::Sender<Built>) {
+    loop {
+        let job = {
+            let mut queue = shared.queue.lock().unwrap_or_else(PoisonError::into_inner);
+            loop {
+                if queue.closed {
+                    return;
+                }
+                if !queue.sorted {
+                    queue.jobs.sort_by(|a, b| b.0.total_cmp(&a.0));
+                    queue.sorted = true;
+                }
+                match queue.jobs.pop() {
+                    Some((_, job)) => break job,
+                    None => queue = shared.wake.wait(queue).unwrap_or_else(PoisonError::into_inner),
+                }
+            }
+        };
+        let start = Instant::now();
+        let built = make(landscape, job);
+        let ns = start.elapsed().as_nanos() as u64;
+        shared.spent_ns.fetch_add(ns, Ordering::Relaxed);
+        shared.worst_ns.fetch_max(ns, Ordering::Relaxed);
+        shared.made.fetch_add(1, Ordering::Relaxed);
+        if results.send(built).is_err() {
+            return;
+        }
+    }
+}
+
+/// Does one job; also what a builder's thread does.
+pub fn make(landscape: &Landscape, job: Job) -> Built {
+    match job {
+        Job::Payload { block, to_sun } => Built::Payload(Box::new(landscape.payload(block, to_sun))),
+        Job::Mesh { block, ring } => Built::Mesh { block, ring, mesh: landscape.mesh(block, ring) },
+        Job::Light { block, to_sun } => {
+            let ground = &landscape.ground;
+            Built::Light { block, to_sun, light: light::light_map(ground.field(), ground.pyramid(), block, to_sun) }
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Everything one block needs to be drawn, made off the render thread and never changed afterwards.
+//!
+//! 24 KiB of data a block (heights 4, light 4, ground map 16) and at most 11 KiB of indices. An event that changes a
+//! block makes a new payload with a higher version.
+
+use super::ground_map::{self, Climate};
+use super::light;
+use super::mask::{Mask, block_posts};
+use super::mesh::{self, Indices, TILE};
+use super::rings::RingMasks;
+use crate::features::lakes::Lakes;
+use crate::grid::BlockIndex;
+use crate::ground::Ground;
+use crate::pyramid::Range;
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
+
+/// How far from a shore the ground map asks for it: beyond, neither colour nor shore line changes.
+const SHORE_REACH_M: f64 = 6_000.0;
+
+/// All that payloads are made from.
+#[derive(Debug)]
+pub struct Landscape {
+    /// The ground.
+    pub ground: Ground,
+    /// Standing water.
+    pub lakes: Arc<Lakes>,
+    /// What the ground map's belts depend on.
+    pub climate: Climate,
+    /// Masks of every block and far ring.
+    pub masks: RingMasks,
+}
+
+/// A block's triangles.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Mesh {
+    /// The list shared by all whole blocks at level 0.
+    Level0,
+    /// The list shared by all whole blocks at level 1.
+    Level1,
+    /// A list of its own: mixed, or with void posts left out.
+    Own(Arc<Indices>),
+}
+
+/// See the module.
+#[derive(Debug, Clone)]
+pub struct Payload {
+    /// Which block.
+    pub block: BlockIndex,
+    /// Counts the versions of a block's payload, from 0.
+    pub version: u32,
+    /// Post heights of the block with an apron towards south and east, `TILE` x `TILE`, row by row; NaN is void.
+    pub heights_m: Box<[f32]>,
+    /// See [`light`].
+    pub light: Box<[u8]>,
+    /// Towards the sun that `light` was made for.
+    pub light_sun: DVec3,
+    /// See [`ground_map`].
+    pub ground_map: Box<[u8]>,
+    /// Heights of the block's own posts.
+    pub range: Range,
+    /// Centre of the block's box, world metres.
+    pub centre_m: DVec3,
+    /// Radius of the sphere around the box, metres.
+    pub radius_m: f64,
+    /// Whether any texel is water.
+    pub has_water: bool,
+    /// Whether any post is void.
+    pub has_void: bool,
+}
+
+impl Mesh {
+    /// Number of triangles.
+    pub fn triangles(&self) -> u32 {
+        let indices = match self {
+            Self::Level0 => mesh::level_0(),
+            Self::Level1 => mesh::level_1(),
+            Self::Own(list) => list,
+        };
+        indices.len() as u32 / 3
+    }
+}
+
+impl Landscape {
+    /// The mesh of a block for a ring.
+    pub fn mesh(&self, block: BlockIndex, ring: usize) -> Mesh {
+        let field = self.ground.field();
+        let mask = self.masks.mask(field.grid(), block, ring);
+        let posts = block_posts(field, block);
+        if posts.iter().any(|h| h.is_nan()) {
+            Mesh::Own(Arc::new(mesh::indices(&mask, Some(&posts))))
+        } else if mask == Mask::all() {
+            Mesh::Level0
+        } else if mask == Mask::NONE {
+            Mesh::Level1
+        } else {
+            Mesh::Own(Arc::new(mesh::indices(&mask, None)))
+        }
+    }
+
+    /// Makes a block's payload, lit from `to_sun` (unit, world frame).
+    pub fn payload(&self, block: BlockIndex, to_sun: DVec3) -> Payload {
+        let field = self.ground.field();
+        let grid = field.grid();
+        let (first_column, first_row) = (block.first_column(), block.first_row());
+        let tile = i64::from(TILE);
+        let heights_m: Box<[f32]> =
+            (0..tile * tile).map(|at| field.post_m(first_column + at % tile, first_row + at / tile)).collect();
+        let posts = block_posts(field, block);
+        let range = posts.iter().fold(Range::VOID, |range, h| range.include(*h));
+        let side = grid.block_m();
+        let (low, high) = if range.is_void() { (0.0, 0.0) } else { (range.least_m.into(), range.greatest_m.into()) };
+        let (west, north) = (grid.x_m(first_column), grid.z_m(first_row));
+        let centre_m = DVec3::new(west + 0.5 * side, 0.5 * (low + high), north + 0.5 * side);
+        let (north_west, south_east) = (DVec2::new(west, north), DVec2::new(west + side, north + side));
+        let water = self.lakes.near(north_west, south_east, SHORE_REACH_M);
+        let shore_m = |x_m: f64, z_m: f64| water.signed_distance_m(DVec2::new(x_m, z_m));
+        let ground_map = ground_map::ground_map(field, block, &self.climate, &shore_m);
+        Payload {
+            block,
+            version: 0,
+            heights_m,
+            light: light::light_map(field, self.ground.pyramid(), block, to_sun),
+            light_sun: to_sun,
+            range,
+            centre_m,
+            radius_m: 0.5 * DVec3::new(side, high - low, side).length(),
+            has_water: ground_map.chunks_exact(4).any(|texel| texel[3] > 127),
+            has_void: posts.iter().any(|h| h.is_nan()),
+            ground_map,
+        }
+    }
+}
+
+impl Payload {
+    /// Bytes that go to the GPU, without indices.
+    pub fn upload_bytes(&self) -> usize {
+        size_of_val(&*self.heights_m) + self.light.len() + self.ground_map.len()
+    }
+}

@@ -1,0 +1,179 @@
+//! The window against what it promises: complete within its range, one row at a time, within budget, never stale.
+
+use super::*;
+use crate::block::ground_map::Climate;
+use crate::block::rings::RingMasks;
+use crate::features::lakes::Lakes;
+use crate::{Grid, Ground, synthetic};
+
+const BLOCKS: u32 = 12;
+
+fn window(wait: bool) -> Window {
+    let grid = Grid::centred(200.0, 20, 20).unwrap();
+    let field = Arc::new(synthetic::ridges(grid, 5));
+    // Near rings, so that all kinds of mesh occur in a small window.
+    let rings = Rings::with_near_radius(6_000.0, 1.0);
+    let landscape = Landscape {
+        masks: RingMasks::new(&field, rings.limits_m),
+        ground: Ground::new(field),
+        lakes: Arc::new(Lakes::default()),
+        climate: Climate::new(0.7, 1_000.0),
+    };
+    let settings = Settings { blocks: BLOCKS, rings, budget_bytes: BUDGET_BYTES, wait, threads: 2 };
+    Window::new(Arc::new(landscape), settings, DVec3::new(0.3, 0.8, 0.2).normalize())
+}
+
+/// What a GPU would hold, kept up by applying uploads.
+#[derive(Default)]
+struct Gpu {
+    blocks: HashMap<usize, Arc<Payload>>,
+    indices: HashMap<usize, Arc<Vec<u16>>>,
+    lights: [HashMap<usize, Arc<[u8]>>; 2],
+}
+
+impl Gpu {
+    fn apply(&mut self, uploads: Vec<Upload>) {
+        for upload in uploads {
+            match upload {
+                Upload::Block { slot, layer, payload } => {
+                    self.lights[layer].insert(slot, Arc::from(payload.light.clone()));
+                    self.blocks.insert(slot, payload);
+                }
+                Upload::Light { slot, layer, light } => {
+                    self.lights[layer].insert(slot, light);
+                }
+                Upload::Indices { slot, indices } => {
+                    self.indices.insert(slot, indices);
+                }
+            }
+        }
+    }
+
+    /// Every block drawn is the block in its slot, with the triangles of its ring and light of the sun in use.
+    fn check(&self, window: &Window) {
+        let (layer, to_sun) = window.light();
+        let landscape = window.landscape();
+        for draw in window.draws(|_, _| true) {
+            assert_eq!(self.blocks[&draw.slot].block, draw.block);
+            match (draw.level, landscape.mesh(draw.block, draw.ring)) {
+                (Level::Zero, Mesh::Level0) | (Level::One, Mesh::Level1) => {}
+                (Level::Own { indices }, Mesh::Own(list)) => {
+                    assert_eq!(indices as usize, list.len());
+                    assert_eq!(self.indices[&draw.slot], list);
+                }
+                other => panic!("{draw:?} has {other:?}"),
+            }
+            let _ = to_sun;
+            assert!(self.lights[layer].contains_key(&draw.slot));
+        }
+    }
+}
+
+#[test]
+fn a_diagonal_flight_has_every_block_in_time_and_within_budget() {
+    let mut window = window(true);
+    let mut gpu = Gpu::default();
+    let (step_m, speed) = (50.0, 3_000.0);
+    let mut eye = DVec2::new(-20_000.0, -21_000.0);
+    gpu.apply(window.update(eye, speed));
+    assert_eq!(window.late_blocks(), 0);
+    for frame in 0..800 {
+        eye += DVec2::new(0.8, 0.6) * step_m;
+        gpu.apply(window.update(eye, speed));
+        assert!(window.counters().upload_bytes <= BUDGET_BYTES);
+        assert_eq!(window.late_blocks(), 0, "frame {frame} at {eye}");
+        if frame % 40 == 0 {
+            gpu.check(&window);
+        }
+    }
+    // 32 km east and 24 km south are at least 5 and 3 borders of 6 km.
+    assert!(window.counters().shifts >= 8, "{:?}", window.counters());
+    assert!(window.counters().switches > 50);
+}
+
+#[test]
+fn a_jump_off_the_map_and_back_recovers() {
+    let mut window = window(true);
+    let mut gpu = Gpu::default();
+    for eye in [
+        DVec2::ZERO,
+        DVec2::splat(1e6),
+        DVec2::new(f64::NAN, 0.0),
+        DVec2::splat(-1e300),
+        DVec2::new(31_000.0, -28_000.0),
+    ] {
+        for _ in 0..60 {
+            gpu.apply(window.update(eye, 0.0));
+        }
+        gpu.check(&window);
+        assert_eq!(window.late_blocks(), 0);
+    }
+    assert!(!window.draws(|_, _| true).is_empty());
+}
+
+#[test]
+fn the_same_path_gives_the_same_meshes() {
+    let fly = || {
+        let mut window = window(true);
+        let mut hashes = Vec::new();
+        for frame in 0..200 {
+            window.update(DVec2::new(-9_000.0 + 90.0 * f64::from(frame), 40.0 * f64::from(frame)), 90.0);
+            hashes.push(window.mesh_hash());
+        }
+        hashes
+    };
+    assert_eq!(fly(), fly());
+}
+
+#[test]
+fn light_flips_for_all_blocks_at_once() {
+    let mut window = window(true);
+    let mut gpu = Gpu::default();
+    gpu.apply(window.update(DVec2::ZERO, 0.0));
+    let old = window.light();
+    let sun = DVec3::new(-0.5, 0.5, 0.2).normalize();
+    window.set_sun(sun);
+    let mut frames = 0;
+    while window.light() == old {
+        assert_eq!(window.light(), old, "no half-lit picture");
+        gpu.apply(window.update(DVec2::new(10.0 * f64::from(frames), 0.0), 10.0));
+        frames += 1;
+        assert!(frames < 100);
+    }
+    assert_eq!(window.light().1, sun);
+    let landscape = window.landscape().clone();
+    let (layer, _) = window.light();
+    for draw in window.draws(|_, _| true) {
+        let fresh = landscape.payload(draw.block, sun);
+        assert_eq!(gpu.lights[layer][&draw.slot][..], fresh.light[..], "{:?}", draw.block);
+    }
+    // Less than half a degree is left alone.
+    window.set_sun((sun + DVec3::new(0.002, 0.0, 0.0)).normalize());
+    assert!(!window.relighting);
+}
+
+#[test]
+fn without_waiting_it_still_settles() {
+    let mut window = window(false);
+    let mut gpu = Gpu::default();
+    for frame in 0..400 {
+        gpu.apply(window.update(DVec2::new(20.0 * f64::from(frame), 0.0), 300.0));
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    gpu.check(&window);
+    assert_eq!(window.late_blocks(), 0);
+}
+
+#[test]
+fn near_blocks_are_level_0() {
+    let mut window = window(true);
+    for frame in 0..100 {
+        window.update(DVec2::new(150.0 * f64::from(frame), -70.0 * f64::from(frame)), 300.0);
+        for draw in window.draws(|_, _| true) {
+            assert!(draw.ring <= window.settings().rings.ring_at(draw.distance_m));
+            if draw.distance_m < window.settings().rings.radii_m[0] {
+                assert_eq!((draw.ring, draw.level), (0, Level::Zero));
+            }
+        }
+    }
+}
