@@ -254,8 +254,9 @@ impl<F: FnMut(Call<'_>) -> Answer> Shell<F> {
             Some(open) => Arc::clone(&open.window),
             None => {
                 let [width, height] = self.size_px;
-                let attributes =
-                    Window::default_attributes().with_title(&self.title).with_inner_size(PhysicalSize::new(width, height));
+                let attributes = Window::default_attributes()
+                    .with_title(&self.title)
+                    .with_inner_size(PhysicalSize::new(width, height));
                 match event_loop.create_window(attributes) {
                     Ok(window) => Arc::new(window),
                     Err(error) => return self.fail(event_loop, WindowError::NoDisplay(error.to_string())),

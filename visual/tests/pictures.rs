@@ -46,7 +46,8 @@ fn the_sky_meets_the_horizon_without_a_rim() {
     let size = [64, 256];
     for sun_deg in [60.0_f64, 12.0, 1.0, -5.0] {
         for heading in [0.0, 1.0, 3.0] {
-            let scene = Scene { sun_direction: terrain::frame::direction(0.0, sun_deg.to_radians()), ..Scene::default() };
+            let scene =
+                Scene { sun_direction: terrain::frame::direction(0.0, sun_deg.to_radians()), ..Scene::default() };
             let picture = drawn(&gpu, &frame(scene, heading, size), Settings::default());
             // The mean of a row takes the dither out: 64 pixels of +-0.5 steps leave below 0.1 step.
             let row = |y: u32| (0..64).map(|x| f64::from(pixel(&picture, x, y)[1])).sum::<f64>() / 64.0;
@@ -113,7 +114,9 @@ fn nonsense_is_refused_or_drawn_but_never_fatal() {
         time_s: f64::NEG_INFINITY,
     };
     for eye_m in [DVec3::NAN, DVec3::new(1e7, 1e6, -1e7), DVec3::new(0.0, -11_000.0, 0.0)] {
-        for attitude in [DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), DQuat::IDENTITY, DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2)] {
+        for attitude in
+            [DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), DQuat::IDENTITY, DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2)]
+        {
             let mut frame = frame(broken, 0.0, [16, 16]);
             frame.views[0].eye_m = eye_m;
             frame.views[0].attitude = attitude;
