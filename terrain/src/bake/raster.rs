@@ -85,8 +85,8 @@ impl Raster {
             return Err(Unreadable::new("as many samples as the size needs, at least one", found));
         }
         for sample in &mut samples_m {
-            // Also true of NaN and the infinities.
-            if !(sample.abs() <= MAX_HEIGHT_M) {
+            // Also true of the infinities; NaN stays what it is.
+            if sample.abs() > MAX_HEIGHT_M {
                 *sample = f32::NAN;
             }
         }
