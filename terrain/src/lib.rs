@@ -22,4 +22,4 @@ pub mod verify;
 
 pub use field::{Corner, Field, FieldError, Triangle};
 pub use grid::{BlockIndex, CELLS, Grid, GridError, POSTS, PostRect};
-pub use projection::{Geodetic, Projection, ProjectionError};
+pub use projection::{Ellipsoid, Geodetic, MAX_CENTRE_LAT_DEG, Projection, ProjectionError, TransverseMercator, WGS84};

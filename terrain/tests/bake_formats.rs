@@ -192,6 +192,32 @@ fn profiles_of_a_dem_are_laid_side_by_side() {
     assert!((first - DVec2::new(557_820.0, 5_108_100.0)).length() < 1e-6);
 }
 
+/// Depths of the Dead Sea and of the Mariana Trench, a spike, and what is no height at all.
+#[test]
+fn floats_keep_every_height_and_lose_what_is_none() {
+    use tiff::encoder::{TiffEncoder, colortype};
+    use tiff::tags::Tag;
+    let heights = [-430.5, -11_000.0, 9_000.25, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3.4e38, -3.4e38, 0.0];
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
+    let mut image = encoder.new_image::<colortype::Gray32Float>(3, 3).unwrap();
+    // A full transformation: columns run north, rows run east.
+    let m = [0.0, 30.0, 0.0, 500_000.0, 30.0, 0.0, 0.0, 4_000_000.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    image.encoder().write_tag(Tag::ModelTransformationTag, &m[..]).unwrap();
+    let keys: [u16; 16] = [1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32_644];
+    image.encoder().write_tag(Tag::GeoKeyDirectoryTag, &keys[..]).unwrap();
+    image.write_data(&heights).unwrap();
+    let raster = open::read(bytes.get_ref(), "a.tif", None).unwrap();
+    for (at, height) in heights.into_iter().enumerate() {
+        let sample = raster.sample_m(at % 3, at / 3);
+        assert!(if height.abs() < 1e5 { sample == height } else { sample.is_nan() }, "{height} became {sample}");
+    }
+    let (first, along, down) =
+        (raster.place(DVec2::ZERO), raster.place(DVec2::new(1.0, 0.0)), raster.place(DVec2::new(0.0, 1.0)));
+    // 500 km east of the false origin is zone 44's meridian.
+    assert!((first.lon_deg() - 81.0).abs() < 1e-9 && along.lat_rad > first.lat_rad && down.lon_rad > first.lon_rad);
+}
+
 #[test]
 fn what_a_file_is_not_is_said() {
     let tile = vec![0_u8; 1201 * 1201 * 2];

@@ -1,7 +1,7 @@
 //! The bake itself, from a request to a world in memory.
 
 use super::error::BakeError;
-use super::extent::{extent, middle};
+use super::extent::{extent, middle, written_deg};
 use super::mosaic::{mosaic, pixel_m};
 use super::open;
 use super::raster::{Raster, Unreadable};
@@ -149,8 +149,8 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
         format_version: FORMAT_VERSION,
         name: request.name.clone(),
         projection: "transverse Mercator on WGS84 about the centre, scale 1; x east, z south, metres".into(),
-        centre_lat_deg: projection.centre().lat_deg(),
-        centre_lon_deg: projection.centre().lon_deg(),
+        centre_lat_deg: written_deg(projection.centre().lat_rad),
+        centre_lon_deg: written_deg(projection.centre().lon_rad),
         step_m: grid.step_m,
         blocks_x: grid.blocks_x,
         blocks_z: grid.blocks_z,

@@ -5,7 +5,7 @@
 //! on points (SRTM, USGS, pixel-is-point GeoTIFF) are given half a pixel of area around them.
 //!
 //! Heights in metres above mean sea level, as the source has them. A void is NaN. Invariant: a sample is finite and
-//! within [`MAX_HEIGHT_M`], or NaN.
+//! within the bounds of a [`Field`](crate::Field), or NaN.
 
 use super::crs::Crs;
 use crate::field::MAX_HEIGHT_M;
