@@ -7,7 +7,7 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-const INFO: &str = "world.toml";
+pub(super) const INFO: &str = "world.toml";
 const MAX_INFO_BYTES: u64 = 16 << 20;
 
 /// Why a world cannot be read or written.
@@ -118,12 +118,28 @@ pub(super) fn read_checked(
     Ok(content)
 }
 
+/// Whether all that is at a path is a world: anything else would be lost when a new one takes its place.
+pub(super) fn may_be_replaced(path: &Path) -> Result<(), StoreError> {
+    if path.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    let kept =
+        |found: String| StoreError::NotAWorld { path: path.to_owned(), found: format!("{found}; it is not replaced") };
+    if !path.join(INFO).is_file() {
+        return Err(kept(if path.is_dir() { "another folder" } else { "a file" }.to_owned()));
+    }
+    for entry in fs::read_dir(path).map_err(|e| StoreError::io(path, e))? {
+        let name = entry.map_err(|e| StoreError::io(path, e))?.file_name();
+        if !super::FILES.iter().any(|file| name == **file) {
+            return Err(kept(format!("one with `{}` in it", name.to_string_lossy())));
+        }
+    }
+    Ok(())
+}
+
 /// Writes a folder beside its place and renames it there.
 pub(super) fn write_folder(path: &Path, info: &WorldInfo, files: &[(&str, &[u8])]) -> Result<(), StoreError> {
-    if path.symlink_metadata().is_ok() && !path.join(INFO).is_file() {
-        let found = if path.is_dir() { "another folder" } else { "a file" };
-        return Err(StoreError::NotAWorld { path: path.to_owned(), found: format!("{found}; it is not replaced") });
-    }
+    may_be_replaced(path)?;
     let mut info = info.clone();
     info.format_version = FORMAT_VERSION;
     info.files = files
