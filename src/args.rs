@@ -191,7 +191,7 @@ pub struct SightArgs {
     /// The world [default: the embedded one].
     #[arg(value_name = "W")]
     pub world: Option<PathBuf>,
-    /// One end.
+    /// One end: degrees, and metres above mean sea level or, with `:agl`, above the ground.
     #[arg(long, value_name = "LAT,LON,ALT[:agl]", value_parser = values::place, allow_hyphen_values = true)]
     pub from: Place,
     /// The other end.

@@ -10,7 +10,7 @@ use std::fmt::{self, Write as _};
 use std::io::{self, Write as _};
 
 /// Longest list that a table shows whole; `--json` has all of it.
-const SHOWN_ROWS: usize = 1000;
+pub const SHOWN_ROWS: usize = 1000;
 
 /// How the report is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

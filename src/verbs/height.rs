@@ -6,7 +6,7 @@
 use crate::args::HeightArgs;
 use crate::failure::Failure;
 use crate::open_world;
-use crate::output::Output;
+use crate::output::{self, Output};
 use crate::points::{self, Points};
 use crate::report::{HeightPoint, Heights};
 use glam::DVec2;
@@ -21,7 +21,14 @@ use terrain::{Geodetic, Grid, Ground, Projection};
 pub fn run(args: &HeightArgs, output: Output) -> Result<(), Failure> {
     let points = read(&args.points)?;
     let world = open_world::open(args.world.as_deref())?;
-    output.print(&Heights { points: answer(&world, &points) })
+    let mut points = answer(&world, &points);
+    if output == Output::Table && points.len() > output::SHOWN_ROWS {
+        // A table shows no more, and to lay out a million rows first would take a gigabyte.
+        let more = points.len() - output::SHOWN_ROWS;
+        output::tell(format_args!("poligon: {more} more points are not shown; --json prints all"));
+        points.truncate(output::SHOWN_ROWS);
+    }
+    output.print(&Heights { points })
 }
 
 fn read(path: &Path) -> Result<Points, Failure> {
@@ -66,7 +73,8 @@ fn answer(world: &World, points: &Points) -> Vec<HeightPoint> {
 }
 
 fn from_geodetic(projection: &Projection, lat_deg: f64, lon_deg: f64) -> HeightPoint {
-    let at = projection.to_world(Geodetic::from_degrees(lat_deg, lon_deg));
+    // Zero is added so that no -0 is printed at the centre.
+    let at = projection.to_world(Geodetic::from_degrees(lat_deg, lon_deg)) + DVec2::ZERO;
     HeightPoint { lat_deg, lon_deg, x_m: at.x, z_m: at.y, ..HeightPoint::default() }
 }
 

@@ -26,5 +26,5 @@ pub use clearance::Clearance;
 pub use field::{Corner, Field, FieldError, Triangle};
 pub use grid::{BlockIndex, CELLS, Grid, GridError, POSTS, PostRect};
 pub use ground::{Area, AreaError, Ground, SurfaceHit};
-pub use pyramid::{Pyramid, Range};
 pub use projection::{Ellipsoid, Geodetic, MAX_CENTRE_LAT_DEG, Projection, ProjectionError, TransverseMercator, WGS84};
+pub use pyramid::{Pyramid, Range};

@@ -75,8 +75,9 @@ pub(super) fn read_info(folder: &Path) -> Result<WorldInfo, StoreError> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Err(not_a_world("a folder without it")),
         Err(error) => return Err(StoreError::io(&path, error)),
     };
-    let mut text = String::new();
-    file.take(MAX_INFO_BYTES).read_to_string(&mut text).map_err(|e| StoreError::io(&path, e))?;
+    let mut bytes = Vec::new();
+    file.take(MAX_INFO_BYTES).read_to_end(&mut bytes).map_err(|e| StoreError::io(&path, e))?;
+    let text = String::from_utf8(bytes).map_err(|_| StoreError::damaged(&path, "UTF-8 text", "other bytes"))?;
     // The version first: another version may have other fields.
     let table: toml::Table =
         text.parse().map_err(|e: toml::de::Error| StoreError::damaged(&path, "TOML", e.message().to_owned()))?;
