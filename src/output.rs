@@ -66,7 +66,7 @@ fn table(value: &Value) -> String {
     let mut text = String::new();
     for (name, shown) in rows {
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "{name:width$}  {shown}");
+        let _ = writeln!(text, "{}", format!("{name:width$}  {shown}").trim_end());
     }
     for (name, entries) in lists {
         let _ = write!(text, "\n{name}\n{}", columns(entries));
@@ -154,7 +154,7 @@ fn shown(value: &Value) -> String {
 fn rounded(float: f64) -> String {
     let decimals = match float.abs() {
         0.0 => 0,
-        size if size < 1e-4 || size >= 1e15 => return format!("{float:.3e}"),
+        size if !(1e-4..1e15).contains(&size) => return format!("{float:.3e}"),
         size if size < 0.1 => 6,
         size if size < 1000.0 => 6 - size.log10().floor().max(0.0) as usize,
         _ => 1,

@@ -7,7 +7,7 @@ use crate::progress::Progress;
 use crate::report;
 use crate::verbs::info;
 use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 use terrain::Geodetic;
 use terrain::bake::{BakeRequest, Input};
@@ -61,7 +61,7 @@ fn source(path: &Path) -> (Input, f64) {
 }
 
 /// The world's name out of `NAME.world`.
-fn world_name(out: &PathBuf) -> Result<String, Failure> {
+fn world_name(out: &Path) -> Result<String, Failure> {
     let named = out.extension() == Some(OsStr::new("world"));
     out.file_stem().filter(|_| named).map(|stem| stem.to_string_lossy().into_owned()).ok_or_else(|| {
         Failure::Misuse(format!("--out: expected a folder name that ends in .world, found `{}`", out.display()))
@@ -74,10 +74,10 @@ mod tests {
 
     #[test]
     fn a_world_is_named_for_its_folder() {
-        assert_eq!(world_name(&"a/Tian Shan.world".into()), Ok("Tian Shan".into()));
-        assert_eq!(world_name(&"a/b.c.world/".into()), Ok("b.c".into()));
+        assert_eq!(world_name(Path::new("a/Tian Shan.world")), Ok("Tian Shan".into()));
+        assert_eq!(world_name(Path::new("a/b.c.world/")), Ok("b.c".into()));
         for wrong in ["", "a", "a.World", "a.world.d", ".world", "a.world/.."] {
-            let Err(Failure::Misuse(said)) = world_name(&wrong.into()) else { panic!("{wrong} was taken") };
+            let Err(Failure::Misuse(said)) = world_name(Path::new(wrong)) else { panic!("{wrong} was taken") };
             assert!(said.contains("ends in .world, found `"), "{said}");
         }
     }
