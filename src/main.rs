@@ -8,7 +8,6 @@
 mod args;
 mod failure;
 mod hud;
-mod moment;
 mod open_world;
 mod output;
 mod points;
