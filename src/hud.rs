@@ -83,6 +83,8 @@ pub struct HudInput<'a> {
     pub date: &'a str,
     /// States in capitals: `PAUSED`, `SLEW`, `SLOWED`.
     pub status: &'a [&'a str],
+    /// What the pilot can do next, one line.
+    pub hint: &'a str,
     /// Width and height, pixels.
     pub viewport_px: (u32, u32),
     /// Vertical field of view, radians.
@@ -375,6 +377,9 @@ fn numbers(sheet: &mut Sheet, input: &HudInput) {
     let rate = if input.frame_ms > 0.0 { shown((1_000.0 / input.frame_ms).round(), 0) } else { "---".to_owned() };
     sheet.text([620.0, 340.0], SMALL, &format!("{} MS {rate} FPS", shown(input.frame_ms, 1)), Anchor::Right, DIM);
 
+    let hint: String = input.hint.chars().take(92).collect();
+    sheet.text([0.0, 340.0], SMALL, &hint, Anchor::Centre, GREEN);
+
     let status = input.status.iter().take(8).copied().collect::<Vec<_>>().join("  ");
     let status: String = status.chars().take(80).collect();
     sheet.text([0.0, 300.0], LARGE, &status, Anchor::Centre, AMBER);
@@ -414,6 +419,7 @@ mod tests {
             frame_ms: 16.7,
             date: "2026-06-21 06:30 UTC",
             status: &["PAUSED", "SLEW"],
+            hint: "ESC QUIT",
             viewport_px: (1280, 720),
             fov_y_rad: 60f64.to_radians(),
             looking_ahead: true,
@@ -493,6 +499,7 @@ mod tests {
                 fov_y_rad: v,
                 date: "юный \u{0} date that is much longer than anything one would ever want to read here",
                 status: &["A STATUS LONGER THAN ANY SCREEN IS WIDE, AND THEN SOME MORE OF IT, AND MORE STILL"],
+                hint: "A HINT LONGER THAN ANY SCREEN IS WIDE, AND THEN SOME MORE OF IT, AND MORE STILL, AND ON AND ON",
                 ..level()
             };
             assert!(assert_inside(&input) > 10);

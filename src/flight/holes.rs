@@ -1,0 +1,1 @@
+//! Holes: sky where ground should be.
