@@ -43,7 +43,7 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
         Length::Endless => 1,
     };
 
-    let mut record = Record::new(started);
+    let mut record = Record::new(started, true);
     let mut sim_hash = RunningHash::default();
     let mut steps = 0;
     let bar = Progress::new("flying");
@@ -72,7 +72,6 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
         flown_s: record.frames().saturating_sub(1) as f64 / LOCKSTEP_HZ,
         steps,
         sim_hash: sim_hash.shown(),
-        is_repeatable: true,
     };
     let mut report = record.report(&scenery, &ending);
     let mut taken = pictures::take(&mut scenery, &plan, date, &args.shots)?;

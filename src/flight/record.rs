@@ -58,6 +58,8 @@ pub struct Record {
     block_crossings: u64,
     latency_ms: Vec<f64>,
     mesh: RunningHash,
+    is_repeatable: bool,
+    updated: bool,
 }
 
 /// What the record cannot know by itself.
@@ -71,13 +73,11 @@ pub struct Ending {
     pub steps: u64,
     /// Its hash.
     pub sim_hash: String,
-    /// Whether the meshes' hash means something: not where frames depend on the clock.
-    pub is_repeatable: bool,
 }
 
 impl Record {
-    /// Nothing yet; `started` is the program's start.
-    pub fn new(started: Instant) -> Self {
+    /// Nothing yet; `started` is the program's start. Only where frames do not depend on the clock are meshes hashed.
+    pub fn new(started: Instant, is_repeatable: bool) -> Self {
         Self {
             started,
             start_ms: 0.0,
@@ -93,6 +93,8 @@ impl Record {
             block_crossings: 0,
             latency_ms: Vec::new(),
             mesh: RunningHash::default(),
+            is_repeatable,
+            updated: false,
         }
     }
 
@@ -120,9 +122,12 @@ impl Record {
                 self.upload_max = self.upload_max.max(uploaded);
             }
         }
+        self.updated = uploaded > 0;
         self.window_full = !window.is_jumping();
         self.late_blocks += window.late_blocks();
-        self.mesh.add(window.mesh_hash());
+        if self.is_repeatable {
+            self.mesh.add(window.mesh_hash());
+        }
         let eye_m = view.eye_m;
         let block = scenery.area.grid().block_at(eye_m.x, eye_m.z);
         if let Some((from_m, from, jumps)) = self.last
@@ -133,6 +138,13 @@ impl Record {
         }
         self.last = Some((eye_m, block, snapshot.jumps));
         self.frames += 1;
+    }
+
+    /// Adds the time of the last frame written down, where it is known only when the next begins.
+    pub fn add_interval(&mut self, took: Duration) {
+        if self.frames > 1 {
+            self.frame_ms.push((milliseconds(took), self.updated));
+        }
     }
 
     /// Adds holes found in a frame that was searched.
@@ -215,7 +227,7 @@ impl Record {
                 holes: self.holes,
             },
             sim: Sim { steps: ending.steps, hash: ending.sim_hash.clone() },
-            mesh_hash: ending.is_repeatable.then(|| self.mesh.shown()),
+            mesh_hash: self.is_repeatable.then(|| self.mesh.shown()),
             image_hash: None,
             shots: Vec::new(),
             peak_rss_mib: report::peak_rss_mib(),

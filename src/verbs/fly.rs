@@ -59,9 +59,9 @@ pub fn run(args: &FlyArgs, to: Output, started: Instant) -> Result<(), Failure> 
     }
     let world = Arc::new(open_world::open(args.world.as_deref())?);
     let report = match mode {
-        Mode::Window => return super::not_built_yet("fly"),
+        Mode::Window => flight::window::fly(args, world, started)?,
         Mode::Lockstep => flight::headless::fly(args, world, started)?,
-        Mode::Paced { .. } => return super::not_built_yet("fly"),
+        Mode::Paced { hz } => flight::paced::fly(args, hz, world, started)?,
     };
     if let Some(path) = &args.report {
         flight::write_report(path, &report)?;
