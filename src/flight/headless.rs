@@ -74,7 +74,7 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
         sim_hash: sim_hash.shown(),
     };
     let mut report = record.report(&scenery, &ending);
-    let mut taken = pictures::take(&mut scenery, &plan, date, &args.shots)?;
+    let mut taken = pictures::take(scenery, &plan, date, &args.shots)?;
     taken.hash.add(last.hash());
     report.image_hash = Some(taken.hash.shown());
     report.shots = taken.files.iter().map(|file| file.display().to_string()).collect();

@@ -1,18 +1,18 @@
 //! Pictures along the track: one each at its places, and a contact sheet of all.
 //!
-//! Taken after the flight by a scenery that waits for every block, so that they do not depend on how far was flown or on
-//! the machine's speed; nothing in them is measured time.
+//! Taken after the flight by a scenery of their own that waits for every block, so that they do not depend on how far was
+//! flown or on the machine's speed; nothing in them is measured time.
 
 use super::plan::{PicturePlace, Plan};
 use super::record::RunningHash;
 use super::device_failed;
 use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::scenery::Scenery;
+use crate::scenery::{Look, Scenery};
 use crate::stage::{self, Captions, Sun};
 use sim::input::Head;
 use std::path::{Path, PathBuf};
-use visual::capture::{Offscreen, Picture};
+use visual::capture::{self, Offscreen, Picture};
 
 /// Pictures in a row of the contact sheet.
 const COLUMNS: u32 = 4;
@@ -30,17 +30,19 @@ pub struct Taken {
     pub hash: RunningHash,
 }
 
-/// Takes the plan's pictures at a date into a folder. The scenery must wait for its blocks.
+/// Takes the plan's pictures at a date into a folder, on the device of the flight's scenery, which ends here.
 ///
 /// # Errors
 /// [`Failure::Failed`] if the device fails or a file cannot be written.
-pub fn take(scenery: &mut Scenery, plan: &Plan, date: sim::UtcTime, folder: &Path) -> Result<Taken, Failure> {
+pub fn take(flown: Scenery, plan: &Plan, date: sim::UtcTime, folder: &Path) -> Result<Taken, Failure> {
     let bar = Progress::new("taking pictures");
-    let size_px = scenery.look.size_px;
+    let Scenery { gpu, world, look, .. } = flown;
+    let mut scenery =
+        Scenery::new(gpu, capture::FORMAT, world.clone(), Look { wait: true, keep_depth: false, ..look });
+    let size_px = look.size_px;
     let target = Offscreen::new(&scenery.gpu, size_px).map_err(device_failed)?;
     let height_at = stage::height_at(&scenery.area);
     let mut scene = plan.scene(date);
-    let world = scenery.world.clone();
     let to_sun = Sun::new(&world, date)?.at(&world, date);
     let head = Head::default();
     let shrink = (COLUMNS * size_px[0]).div_ceil(SHEET_PX).max(1);
@@ -49,7 +51,8 @@ pub fn take(scenery: &mut Scenery, plan: &Plan, date: sim::UtcTime, folder: &Pat
     for (number, place) in plan.pictures.iter().enumerate() {
         bar.show(number as f64 / plan.pictures.len() as f64);
         scene.seek_track(place.distance_m);
-        let snapshot = settled(&mut scene, &*height_at);
+        // A step keeps a track that runs under the ground above it.
+        let snapshot = sim::lockstep(&mut scene, &*height_at, 1);
         let view = scenery.view(stage::eye_m(&snapshot), stage::attitude(&snapshot, &head), size_px);
         for _ in 0..MOST_UPDATES {
             scenery.follow(&view, 0.0, to_sun);
@@ -68,11 +71,6 @@ pub fn take(scenery: &mut Scenery, plan: &Plan, date: sim::UtcTime, folder: &Pat
     let sheet = Picture::contact_sheet(&small, COLUMNS.min(small.len() as u32), 1);
     taken.files.push(write(&sheet, folder, "contact-sheet.png")?);
     Ok(taken)
-}
-
-/// A track that runs under the ground is flown above it: that is a step's business, so the picture is a step later.
-fn settled(scene: &mut sim::Scene, height_at: &sim::HeightAt) -> std::sync::Arc<sim::Snapshot> {
-    sim::lockstep(scene, height_at, 1)
 }
 
 fn write(picture: &Picture, folder: &Path, name: &str) -> Result<PathBuf, Failure> {
