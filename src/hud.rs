@@ -77,7 +77,7 @@ pub struct HudInput<'a> {
     pub load_factor: f64,
     /// 0..1.
     pub throttle: f64,
-    /// Time of the last frame, milliseconds.
+    /// Time of the last frame, milliseconds; not shown if it is not a time.
     pub frame_ms: f64,
     /// Date and time of day, as it shall read.
     pub date: &'a str,
@@ -94,7 +94,7 @@ pub struct HudInput<'a> {
 }
 
 const GREEN: [f32; 4] = [0.10, 1.0, 0.25, 0.95];
-const DIM: [f32; 4] = [0.10, 1.0, 0.25, 0.6];
+const DIM: [f32; 4] = [0.10, 1.0, 0.25, 0.75];
 const AMBER: [f32; 4] = [1.0, 0.55, 0.05, 1.0];
 /// Letter heights at 720 rows, pixels.
 const LARGE: f64 = 18.0;
@@ -374,9 +374,11 @@ fn numbers(sheet: &mut Sheet, input: &HudInput) {
 
     let date: String = input.date.chars().take(40).collect();
     sheet.text([-620.0, 340.0], SMALL, &date, Anchor::Left, DIM);
-    let rate = if input.frame_ms > 0.0 { shown((1_000.0 / input.frame_ms).round(), 0) } else { "---".to_owned() };
-    sheet.text([620.0, 340.0], SMALL, &format!("{} MS {rate} FPS", shown(input.frame_ms, 1)), Anchor::Right, DIM);
-
+    // Where frames are not timed there is nothing to say.
+    if input.frame_ms > 0.0 {
+        let (ms, rate) = (shown(tenth(input.frame_ms), 1), shown((1_000.0 / input.frame_ms).round(), 0));
+        sheet.text([620.0, 340.0], SMALL, &format!("{ms} MS {rate} FPS"), Anchor::Right, DIM);
+    }
     let hint: String = input.hint.chars().take(92).collect();
     sheet.text([0.0, 340.0], SMALL, &hint, Anchor::Centre, GREEN);
 

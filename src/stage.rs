@@ -15,10 +15,13 @@ use terrain::store::World;
 use visual::camera::View;
 use visual::passes::lines::{self, Align, Stroke};
 
+/// How much wider than the font's own its lines are drawn: thin ones are lost before snow.
+const BOLDER: f32 = 1.25;
+
 /// What the display says beside the flight itself.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Captions<'a> {
-    /// Time of the last frame, milliseconds; shown as dashes if not finite.
+    /// Time of the last frame, milliseconds; not shown if it is not a time.
     pub frame_ms: f64,
     /// States in capitals, after the simulation's own.
     pub status: &'a [&'a str],
@@ -132,7 +135,8 @@ pub fn hud(world: &World, snapshot: &Snapshot, view: &View, head: &Head, caption
             Anchor::Centre => Align::Middle,
             Anchor::Right => Align::Right,
         };
-        strokes.extend(lines::text(&text.text, base, cap_px, align, text.colour));
+        let letters = lines::text(&text.text, base, cap_px, align, text.colour);
+        strokes.extend(letters.into_iter().map(|stroke| Stroke { width_px: BOLDER * stroke.width_px, ..stroke }));
     }
     strokes
 }

@@ -120,7 +120,7 @@ fn a_window_takes_keys_pauses_takes_pictures_and_quits() {
     if window.is_empty() {
         let mut told = String::new();
         let _ = std::io::Read::read_to_string(&mut program.0.stderr.take().expect("stderr"), &mut told);
-        assert!(told.contains("adapter") && told.contains("--headless"), "the window did not open: {told}");
+        assert!(told.contains("expected a Vulkan adapter"), "the window did not open: {told}");
         println!("skipped: {told}");
         return;
     }

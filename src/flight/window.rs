@@ -62,9 +62,11 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
             Ok(failure) => *failure,
             Err(other) => Failure::while_doing("flying", other),
         }),
-        Err(error @ (WindowError::NoDisplay(_) | WindowError::Gpu(_))) => {
-            Err(Failure::Failed(format!("opening a window: {error}; `poligon fly --headless` needs none")))
-        }
+        // Where there is nothing to draw with, the window system's complaint would hide it.
+        Err(error) => Err(match Gpu::headless() {
+            Err(nothing) => Failure::while_doing("opening a window", nothing),
+            Ok(_) => Failure::Failed(format!("opening a window: {error}; `poligon fly --headless` needs none")),
+        }),
     }
 }
 
