@@ -7,6 +7,7 @@
 
 mod args;
 mod failure;
+mod flight;
 mod hud;
 mod open_world;
 mod output;
@@ -14,6 +15,8 @@ mod points;
 mod progress;
 mod report;
 mod scenery;
+mod stage;
+mod thread_time;
 mod values;
 mod verbs;
 
@@ -22,8 +25,10 @@ use clap::Parser;
 use failure::Failure;
 use output::Output;
 use std::process::ExitCode;
+use std::time::Instant;
 
 fn main() -> ExitCode {
+    let started = Instant::now();
     let line = match CommandLine::try_parse() {
         Ok(line) => line,
         Err(told) => {
@@ -32,7 +37,7 @@ fn main() -> ExitCode {
             return ExitCode::from(if told.use_stderr() { 2 } else { 0 });
         }
     };
-    match run(&line) {
+    match run(&line, started) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             output::tell(format_args!("poligon: {failure}"));
@@ -41,10 +46,10 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(line: &CommandLine) -> Result<(), Failure> {
+fn run(line: &CommandLine, started: Instant) -> Result<(), Failure> {
     let output = if line.json { Output::Json } else { Output::Table };
     match &line.verb {
-        Verb::Fly(args) => verbs::fly::run(args, output),
+        Verb::Fly(args) => verbs::fly::run(args, output, started),
         Verb::Bake(args) => verbs::bake::run(args, output),
         Verb::Info(args) => verbs::info::run(args, output),
         Verb::Verify(args) => verbs::verify::run(args, output),
