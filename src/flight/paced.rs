@@ -41,14 +41,14 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), look);
     let length = Length::of(args, true);
     let plan = Plan::new(args, length, hz, &world, &scenery.area)?;
-    let date = stage::utc(args.view.time.unwrap_or_else(|| scenery::default_moment(&world)));
+    let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
     let height_at = stage::height_at(&scenery.area);
     let mut scene = plan.scene(date);
     sim::lockstep(&mut scene, &*height_at, 1);
     // Held until the first picture, which takes as long as filling the window does.
     scene.clock.set_paused(true);
-    let sim = SimThread::start(scene, height_at)
-        .map_err(|error| Failure::while_doing("starting the simulation", error))?;
+    let sim =
+        SimThread::start(scene, height_at).map_err(|error| Failure::while_doing("starting the simulation", error))?;
     let mut sun = Sun::new(&world, date)?;
     let head = Head::default();
     let period = Duration::from_secs_f64(1.0 / hz);
@@ -102,12 +102,7 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
             last.slowed_s
         ));
     }
-    let ending = Ending {
-        mode: "paced",
-        flown_s,
-        steps: last.step,
-        sim_hash: report::hash(last.hash()),
-    };
+    let ending = Ending { mode: "paced", flown_s, steps: last.step, sim_hash: report::hash(last.hash()) };
     let mut report = record.report(&scenery, &ending);
     let taken = pictures::take(scenery, &plan, date, &args.shots)?;
     report.image_hash = Some(taken.hash.shown());
