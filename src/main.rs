@@ -6,6 +6,7 @@
 #![allow(dead_code, reason = "to be removed when the verbs are filled: reports and values wait for them")]
 
 mod args;
+mod bench;
 mod failure;
 mod hud;
 mod moment;

@@ -440,6 +440,10 @@ pub struct BenchResult {
     pub ratio_ci: Option<[f64; 2]>,
     /// Rounds, each with both.
     pub rounds: u32,
+    /// First and third quartile of `ours` over the rounds.
+    pub quartiles: Option<[f64; 2]>,
+    /// What one must know to read the figure.
+    pub note: Option<String>,
 }
 
 /// What is compared with.
@@ -605,7 +609,7 @@ mod tests {
         assert_eq!(
             names(&Bench { results: vec![result], skipped: vec![Skipped::default()] }),
             "results[].name results[].unit results[].ours results[].yardstick.name results[].yardstick.version \
-             results[].yardstick.value results[].ratio results[].ratio_ci results[].rounds skipped[].name skipped[].reason"
+             results[].yardstick.value results[].ratio results[].ratio_ci results[].rounds results[].quartiles results[].note skipped[].name skipped[].reason"
         );
         let knob = Knob { points: vec![KnobPoint::default()], ..Knob::default() };
         assert_eq!(
