@@ -34,7 +34,8 @@ fn lines_vertex(@builtin(vertex_index) index: u32, segment: Segment) -> Corner {
     let length_px = distance(from_px, to_px);
     let along = select(vec2<f32>(1.0, 0.0), (to_px - from_px) / max(length_px, 1e-6), length_px > 1e-6);
     let across = vec2<f32>(-along.y, along.x);
-    let reach_px = segment.half_width_px + segment.soft_px;
+    // Beyond half the fade nothing is covered; half a pixel more, so that no covered pixel centre is missed.
+    let reach_px = segment.half_width_px + 0.5 * segment.soft_px + 0.5;
     let end = f32(index & 1u);
     let side = f32((index >> 1u) & 1u) * 2.0 - 1.0;
     let at_px = mix(from_px, to_px, end) + (along * (end * 2.0 - 1.0) + across * side) * reach_px;
@@ -56,9 +57,9 @@ fn lines_fragment(corner: Corner) -> @location(0) vec4<f32> {
     let part = clamp(dot(from_px, along) / max(dot(along, along), 1e-9), 0.0, 1.0);
     let away_px = distance(from_px, along * part);
     // Where two segments meet, each keeps its own side of the cut, so nothing is painted twice.
-    // The first bound is strict and the second is not: a pixel on the cut is painted once. A free end passes.
+    // The cut is moved a little, the same way for both, so that rounding cannot put a pixel centre on it; free ends pass.
     let free = 1.0 - dot(corner.joints.xy, corner.joints.xy);
-    let mine = dot(from_px, corner.joints.xy) + free > 0.0 && dot(to_px, corner.joints.zw) >= 0.0;
+    let mine = dot(from_px, corner.joints.xy) + free > 0.003 && dot(to_px, corner.joints.zw) >= -0.003;
     let cover = clamp((corner.edge.x - away_px) / corner.edge.y + 0.5, 0.0, 1.0);
     let alpha = select(0.0, cover * corner.colour.a, mine);
     return vec4<f32>(corner.colour.rgb * alpha, alpha);

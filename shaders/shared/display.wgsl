@@ -12,5 +12,5 @@ fn display(light: vec3<f32>) -> vec3<f32> {
 fn dither(colour: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
     let noise = fract(52.9829189 * fract(dot(pixel, vec2<f32>(0.06711056, 0.00583715)))) - 0.5;
     // d(linear) / d(sRGB) is close to 2 sqrt(linear); green stands for all three.
-    return colour + sqrt(colour.g) * (noise * 2.0 / 255.0);
+    return colour + sqrt(colour.g) * (noise * 2.3 / 255.0);
 }

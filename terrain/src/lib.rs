@@ -25,4 +25,4 @@ pub use field::{Corner, Field, FieldError, Triangle};
 pub use grid::{BlockIndex, CELLS, Grid, GridError, POSTS, PostRect};
 pub use ground::{Area, AreaError, Ground, SurfaceHit};
 pub use pyramid::{Pyramid, Range};
-pub use projection::{Geodetic, Projection, ProjectionError};
+pub use projection::{Ellipsoid, Geodetic, MAX_CENTRE_LAT_DEG, Projection, ProjectionError, TransverseMercator, WGS84};

@@ -16,7 +16,8 @@ fn main() -> Result<(), window::WindowError> {
         match call {
             Call::Ready { gpu, format, size_px, scale_factor } => {
                 eprintln!("{} ({}), {format:?}, {size_px:?}, scale {scale_factor}", gpu.report.name, gpu.report.kind);
-                renderer = Some(Renderer::new(gpu, format, Settings { sky_in_background: true, ..Settings::default() }));
+                renderer =
+                    Some(Renderer::new(gpu, format, Settings { sky_in_background: true, ..Settings::default() }));
             }
             Call::Event(event) => {
                 eprintln!("{event:?}");

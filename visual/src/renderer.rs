@@ -150,8 +150,7 @@ impl Renderer {
         if let Some(view) = frame.views.first() {
             self.lines.prepare(&gpu.device, &gpu.queue, &frame.hud, view.size_px);
         }
-        let mut encoder =
-            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         for (index, (view, target)) in frame.views.iter().zip(targets).enumerate() {
             gpu.check_size(view.size_px)?;
             self.fit(gpu, index, view.size_px);
@@ -210,8 +209,7 @@ impl Renderer {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_bind_group(0, &frame_group, &[]);
-        let about =
-            SceneView { index, view: &safe, target_px: targets.scene_px, frame_group: &frame_group };
+        let about = SceneView { index, view: &safe, target_px: targets.scene_px, frame_group: &frame_group };
         solid(&about, &mut pass);
         pass.set_bind_group(0, &frame_group, &[]);
         self.sky.draw(&mut pass);
@@ -248,7 +246,7 @@ impl Renderer {
             return;
         }
         let scene_px = self.scene_px(final_px);
-        let texture = |label, format, samples, usage| {
+        let texture = |label, format: wgpu::TextureFormat, samples, usage, view_formats: &[wgpu::TextureFormat]| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: wgpu::Extent3d { width: scene_px[0], height: scene_px[1], depth_or_array_layers: 1 },
@@ -257,20 +255,28 @@ impl Renderer {
                 dimension: wgpu::TextureDimension::D2,
                 format,
                 usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
-                view_formats: &[],
+                view_formats,
             })
         };
         let whole = wgpu::TextureViewDescriptor::default();
         let samples = self.settings.msaa;
         let readable = self.settings.keep_depth && samples == 1;
         let depth_usage = if readable { wgpu::TextureUsages::COPY_SRC } else { wgpu::TextureUsages::empty() };
-        let depth = texture("scene depth", DEPTH_FORMAT, samples, depth_usage);
-        let multisampled = (samples > 1)
-            .then(|| texture("scene samples", self.colour, samples, wgpu::TextureUsages::empty()).create_view(&whole));
+        let depth = texture("scene depth", DEPTH_FORMAT, samples, depth_usage, &[]);
+        let multisampled = (samples > 1).then(|| {
+            texture("scene samples", self.colour, samples, wgpu::TextureUsages::empty(), &[]).create_view(&whole)
+        });
         let small = self.upscale.as_ref().map(|upscale| {
             let usage = wgpu::TextureUsages::TEXTURE_BINDING;
-            let view = texture("small scene", self.colour, 1, usage).create_view(&whole);
-            let group = upscale.bind(&gpu.device, &view);
+            let plain = self.colour.remove_srgb_suffix();
+            let small = texture("small scene", self.colour, 1, usage, &[plain]);
+            let view = small.create_view(&whole);
+            let encoded = small.create_view(&wgpu::TextureViewDescriptor {
+                format: Some(plain),
+                usage: Some(usage),
+                ..wgpu::TextureViewDescriptor::default()
+            });
+            let group = upscale.bind(&gpu.device, &encoded);
             (view, group)
         });
         let depth_view = depth.create_view(&whole);

@@ -19,12 +19,17 @@ pub const SHARED: &[(&str, &str)] = &[
     ("shared/sky.wgsl", include_str!("../../shaders/shared/sky.wgsl")),
 ];
 
-/// The whole text of a shader. An unknown name gives a text that no compiler accepts and that says what was missing;
-/// a test joins and compiles every source, so it is not met outside tests.
+/// The whole text of a shader by name. An unknown name gives a text that no compiler accepts and that says what was
+/// missing; a test joins and compiles every source, so it is not met outside tests.
 pub fn joined(name: &str) -> String {
-    let Some((_, source)) = SOURCES.iter().find(|(known, _)| *known == name) else {
-        return format!("expected one of the embedded shaders, found {name}");
-    };
+    match SOURCES.iter().find(|(known, _)| *known == name) {
+        Some((_, source)) => join(source),
+        None => format!("expected one of the embedded shaders, found {name}"),
+    }
+}
+
+/// A source with its include lines replaced.
+pub fn join(source: &str) -> String {
     let mut text = String::with_capacity(2 * source.len());
     for line in source.lines() {
         let included = line.trim().strip_prefix("//!include \"").and_then(|rest| rest.strip_suffix('"'));

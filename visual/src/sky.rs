@@ -46,7 +46,7 @@ const AIR_M: f32 = 100_000.0;
 const HIGHEST_EYE_M: f32 = 60_000.0;
 const GROUND_ALBEDO: f32 = 0.3;
 /// Starlight and airglow, far above nature's so that a screen can show it.
-const NIGHT: Vec3 = Vec3::new(1.0e-6, 1.5e-6, 2.8e-6);
+const NIGHT: Vec3 = Vec3::new(2.4e-6, 3.5e-6, 6.5e-6);
 /// Sunlit ground is lit as seen from this far above the haze base, metres.
 const SURFACE_ABOVE_BASE_M: f32 = 1_000.0;
 
@@ -81,6 +81,17 @@ pub struct Light {
     pub exposure: f32,
 }
 
+/// One step of a ray, without what depends on the azimuth.
+struct Step {
+    /// Unit vector from the planet's centre: level along the ray, and up at the eye.
+    outward: Vec2,
+    height_m: f32,
+    molecules: Vec3,
+    haze: Vec3,
+    /// Share of light scattered here that reaches the eye, times the length, metres.
+    weight: Vec3,
+}
+
 impl Air {
     /// Prepares air with a visibility at a base height, both metres (a sane [`crate::frame::Scene`]'s).
     pub fn new(visibility_m: f64, haze_base_m: f64) -> Self {
@@ -104,18 +115,19 @@ impl Air {
 
         let sun_irradiance = self.sunlight_at(surface_m, sun_sin);
         let sky_irradiance = self.sky_irradiance(surface_m, sun);
-        let exposure = exposure(sun_irradiance * sun_sin.max(0.25) + sky_irradiance);
+        let exposure = exposure(sun_irradiance * sun_sin.max(0.6) + sky_irradiance);
 
         let mut table = Vec::with_capacity((TABLE_WIDTH * TABLE_HEIGHT * 4) as usize);
         for row in 0..TABLE_HEIGHT {
             let elevation_sin = (row as f32 / (TABLE_HEIGHT - 1) as f32).powi(2);
             let level = (1.0 - elevation_sin * elevation_sin).max(0.0).sqrt();
+            let ray = self.ray(eye_m, elevation_sin, RAY_STEPS);
             for column in 0..TABLE_WIDTH {
                 let half_sin = column as f32 / (TABLE_WIDTH - 1) as f32;
                 let azimuth_cos = 1.0 - 2.0 * half_sin * half_sin;
                 let azimuth_sin = (1.0 - azimuth_cos * azimuth_cos).max(0.0).sqrt();
                 let direction = Vec3::new(level * azimuth_cos, elevation_sin, level * azimuth_sin);
-                let radiance = self.radiance(eye_m, direction, sun, RAY_STEPS) * exposure;
+                let radiance = self.gather(&ray, direction, sun) * exposure;
                 table.extend([radiance.x, radiance.y, radiance.z, 1.0].map(half));
             }
         }
@@ -131,30 +143,43 @@ impl Air {
         }
     }
 
-    /// Sky radiance from a height (metres) along a direction at or above the horizon, the sun being in the x-y plane.
-    fn radiance(&self, height_m: f32, direction: Vec3, sun: Vec3, steps: usize) -> Vec3 {
-        let eye = Vec2::new(0.0, PLANET_M + height_m);
-        let end_m = to_top_m(eye.y, direction.y);
-        let cosine = direction.dot(sun);
-        let (molecule_phase, haze_phase) = (rayleigh_phase(cosine), henyey_greenstein(cosine));
-        let (mut sum, mut passed) = (Vec3::ZERO, Vec3::ONE);
+    /// The steps of a ray from a height (metres) at or above the horizon: all that does not depend on the azimuth.
+    fn ray(&self, height_m: f32, elevation_sin: f32, steps: usize) -> Vec<Step> {
+        let eye_m = PLANET_M + height_m;
+        let level = (1.0 - elevation_sin * elevation_sin).max(0.0).sqrt();
+        let end_m = to_top_m(eye_m, elevation_sin);
+        let mut passed = Vec3::ONE;
         let mut from_m = 0.0;
-        for step in 0..steps {
-            let to_m = end_m * ((step + 1) as f32 / steps as f32).powi(2);
+        let step = |number: usize| {
+            let to_m = end_m * ((number + 1) as f32 / steps as f32).powi(2);
             let at_m = 0.5 * (from_m + to_m);
-            let point = Vec3::new(0.0, eye.y, 0.0) + direction * at_m;
+            let point = Vec2::new(level * at_m, eye_m + elevation_sin * at_m);
             let radius_m = point.length();
-            let height_m = radius_m - PLANET_M;
-            let sun_sin = point.dot(sun) / radius_m;
-            let (molecules, haze, extinction) = self.substance(height_m);
-            let sunlight = self.sunlight_at(height_m, sun_sin);
-            let source = (molecules * molecule_phase + haze * haze_phase) * sunlight
-                + (molecules + haze) * self.orders_at(height_m, sun_sin);
+            let (molecules, haze, extinction) = self.substance(radius_m - PLANET_M);
             let through = exp(-extinction * (to_m - from_m));
             // The source is even within a step, extinction is not neglected: exact for even air.
-            sum += passed * source * (Vec3::ONE - through) / extinction.max(Vec3::splat(1e-12));
+            let weight = passed * (Vec3::ONE - through) / extinction.max(Vec3::splat(1e-12));
             passed *= through;
             from_m = to_m;
+            Step { outward: point / radius_m, height_m: radius_m - PLANET_M, molecules, haze, weight }
+        };
+        (0..steps).map(step).collect()
+    }
+
+    /// Sky radiance along a ray in the direction whose steps are given, the sun being in the x-y plane.
+    fn gather(&self, ray: &[Step], direction: Vec3, sun: Vec3) -> Vec3 {
+        let cosine = direction.dot(sun);
+        let (molecule_phase, haze_phase) = (rayleigh_phase(cosine), henyey_greenstein(cosine));
+        // Cosine of the azimuth from the sun, times the cosine of the sun's elevation.
+        let level = Vec2::new(direction.x, direction.z).length();
+        let towards = if level > 0.0 { direction.x / level * sun.x } else { 0.0 };
+        let mut sum = Vec3::ZERO;
+        for step in ray {
+            let sun_sin = step.outward.x * towards + step.outward.y * sun.y;
+            let source = (step.molecules * molecule_phase + step.haze * haze_phase)
+                * self.sunlight_at(step.height_m, sun_sin)
+                + (step.molecules + step.haze) * self.orders_at(step.height_m, sun_sin);
+            sum += step.weight * source;
         }
         // Airglow is seen through more air, and so brighter, near the horizon.
         sum + NIGHT * (1.0 + 1.5 * (1.0 - direction.y).powi(4))
@@ -168,9 +193,10 @@ impl Air {
             // Even in the square of the sine: each ring then has the same weight of cosine times solid angle.
             let elevation_sin = ((ring as f32 + 0.5) / RINGS as f32).sqrt();
             let level = (1.0 - elevation_sin * elevation_sin).sqrt();
+            let ray = self.ray(height_m, elevation_sin, 20);
             for spoke in 0..SPOKES {
                 let (sin, cos) = (PI * (spoke as f32 + 0.5) / SPOKES as f32).sin_cos();
-                sum += self.radiance(height_m, Vec3::new(level * cos, elevation_sin, level * sin), sun, 20);
+                sum += self.gather(&ray, Vec3::new(level * cos, elevation_sin, level * sin), sun);
             }
         }
         sum * (PI / (RINGS * SPOKES) as f32)
@@ -256,8 +282,8 @@ impl Air {
                         let length_m = point.length();
                         let (molecules, haze, extinction) = self.substance(length_m - PLANET_M);
                         let through = exp(-extinction * (to_m - from_m));
-                        let weight = passed * (molecules + haze) * (Vec3::ONE - through)
-                            / extinction.max(Vec3::splat(1e-12));
+                        let weight =
+                            passed * (molecules + haze) * (Vec3::ONE - through) / extinction.max(Vec3::splat(1e-12));
                         let sunlight = self.sunlight_at(length_m - PLANET_M, point.dot(sun) / length_m);
                         second += weight * sunlight / (2.0 * TAU);
                         returned += weight;
@@ -292,7 +318,7 @@ pub fn molecules_at(height_m: f32) -> f32 {
 /// all, so night stays dark.
 pub fn exposure(irradiance: Vec3) -> f32 {
     let luminance = irradiance.dot(Vec3::new(0.2126, 0.7152, 0.0722)).max(1e-7);
-    3.3 * luminance.powf(-0.7)
+    3.1 * luminance.powf(-0.6)
 }
 
 fn rayleigh_phase(cosine: f32) -> f32 {
@@ -397,11 +423,10 @@ mod tests {
     fn phases_scatter_as_much_as_they_receive() {
         for phase in [rayleigh_phase, henyey_greenstein] {
             let steps = 20_000;
-            let sum: f64 = (0..steps)
-                .map(|i| f64::from(phase((i as f32 + 0.5) / steps as f32 * 2.0 - 1.0)))
-                .sum::<f64>()
-                * (2.0 / f64::from(steps))
-                * std::f64::consts::TAU;
+            let sum: f64 =
+                (0..steps).map(|i| f64::from(phase((i as f32 + 0.5) / steps as f32 * 2.0 - 1.0))).sum::<f64>()
+                    * (2.0 / f64::from(steps))
+                    * std::f64::consts::TAU;
             assert!((sum - 1.0).abs() < 1e-4, "{sum}");
         }
     }
@@ -416,8 +441,8 @@ mod tests {
                 let (y, level) = elevation_deg.to_radians().sin_cos();
                 let (azimuth_sin, azimuth_cos) = azimuth_deg.to_radians().sin_cos();
                 let direction = Vec3::new(level * azimuth_cos, y, level * azimuth_sin);
-                let fast = air.radiance(2_000.0, direction, sun, RAY_STEPS);
-                let slow = air.radiance(2_000.0, direction, sun, 2_000);
+                let fast = air.gather(&air.ray(2_000.0, direction.y, RAY_STEPS), direction, sun);
+                let slow = air.gather(&air.ray(2_000.0, direction.y, 2_000), direction, sun);
                 let off = ((fast - slow) / slow).abs().max_element();
                 assert!(off < 0.02, "sun {sun_deg}, {elevation_deg}, {azimuth_deg}: {off}");
             }

@@ -69,7 +69,8 @@ pub fn position(unix_s: f64, latitude_deg: f64, longitude_deg: f64) -> Result<Su
         return Err(refused("expected a year of 1600 to 2999".into()));
     }
     let delta_t_s = delta_t::estimate(year).map_err(|error| refused(error.to_string()))?;
-    let time = JulianDate::new(unix_s / 86_400.0 + 2_440_587.5, delta_t_s).map_err(|error| refused(error.to_string()))?;
+    let time =
+        JulianDate::new(unix_s / 86_400.0 + 2_440_587.5, delta_t_s).map_err(|error| refused(error.to_string()))?;
     let place = Location { latitude: latitude_deg, longitude: longitude_deg };
     let found =
         SolarPositions::new().at_from_julian(time, place, 0.0, None).map_err(|error| refused(error.to_string()))?;

@@ -273,8 +273,8 @@ mod tests {
                     let height_m = eye_m + (point_m - eye_m) * (f64::from(i) + 0.5) / f64::from(steps);
                     let haze = f64::from(uniforms.haze_per_m)
                         * (-(height_m - 500.0) / f64::from(sky::HAZE_SCALE_HEIGHT_M)).exp();
-                    let molecules =
-                        f64::from(uniforms.molecules_per_m) * (-height_m / f64::from(sky::MOLECULE_SCALE_HEIGHT_M)).exp();
+                    let molecules = f64::from(uniforms.molecules_per_m)
+                        * (-height_m / f64::from(sky::MOLECULE_SCALE_HEIGHT_M)).exp();
                     (haze + molecules) * f64::from(relative.length()) / f64::from(steps)
                 })
                 .sum();

@@ -131,7 +131,13 @@ pub type Answer = Result<Flow, Box<dyn std::error::Error>>;
 /// # Errors
 /// [`WindowError`].
 pub fn run(title: &str, size_px: [u32; 2], callback: impl FnMut(Call<'_>) -> Answer) -> Result<(), WindowError> {
-    let event_loop = EventLoop::new().map_err(|error| WindowError::NoDisplay(error.to_string()))?;
+    let event_loop = EventLoop::new().map_err(|error| {
+        // The library puts its own source file before the reason.
+        let text = error.to_string();
+        WindowError::NoDisplay(
+            text.rsplit(".rs:").next().unwrap_or(&text).trim_start_matches(|c: char| !c.is_alphabetic()).to_owned(),
+        )
+    })?;
     let mut shell =
         Shell { title: title.to_owned(), size_px, callback, open: None, losses: 0, asleep: false, failed: None };
     let ended = event_loop.run_app(&mut shell);
@@ -254,8 +260,9 @@ impl<F: FnMut(Call<'_>) -> Answer> Shell<F> {
             Some(open) => Arc::clone(&open.window),
             None => {
                 let [width, height] = self.size_px;
-                let attributes =
-                    Window::default_attributes().with_title(&self.title).with_inner_size(PhysicalSize::new(width, height));
+                let attributes = Window::default_attributes()
+                    .with_title(&self.title)
+                    .with_inner_size(PhysicalSize::new(width, height));
                 match event_loop.create_window(attributes) {
                     Ok(window) => Arc::new(window),
                     Err(error) => return self.fail(event_loop, WindowError::NoDisplay(error.to_string())),

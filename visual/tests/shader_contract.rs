@@ -92,9 +92,31 @@ fn frame_uniforms_are_the_same_on_both_sides() {
         };
     }
     let host = host![
-        clip_from_relative, eye_high_m, eye_altitude_m, eye_low_m, time_s, ray_corner, exposure, ray_right, near_m,
-        ray_down, focal_px, sun_direction, sun_radius_rad, sun_irradiance, molecules_per_m, sky_irradiance, haze_per_m,
-        disc, haze_base_m, sun_level, viewport_px, fade_start_m, fade_end_m, eye_molecules, eye_haze,
+        clip_from_relative,
+        eye_high_m,
+        eye_altitude_m,
+        eye_low_m,
+        time_s,
+        ray_corner,
+        exposure,
+        ray_right,
+        near_m,
+        ray_down,
+        focal_px,
+        sun_direction,
+        sun_radius_rad,
+        sun_irradiance,
+        molecules_per_m,
+        sky_irradiance,
+        haze_per_m,
+        disc,
+        haze_base_m,
+        sun_level,
+        viewport_px,
+        fade_start_m,
+        fade_end_m,
+        eye_molecules,
+        eye_haze,
     ];
     for (name, source) in shaders::SOURCES {
         if source.contains("shared/frame.wgsl") {
@@ -128,7 +150,9 @@ fn fragments_read_few_textures_and_none_in_a_loop() {
             let (count, in_loop) = samples(&module, entry);
             let most = match (*name, entry.stage) {
                 ("terrain.wgsl", naga::ShaderStage::Fragment) => 4,
-                _ => 1,
+                (_, naga::ShaderStage::Fragment) => 1,
+                // The vertex stage does the work: only loops are forbidden there.
+                _ => usize::MAX,
             };
             assert!(count <= most && !in_loop, "{name} {}: {count} reads, in a loop: {in_loop}", entry.name);
         }

@@ -1,21 +1,26 @@
 //! The bake itself, from a request to a world in memory.
 
 use super::error::BakeError;
-use super::extent::{extent, middle};
+use super::extent::{extent, middle, written_deg};
 use super::mosaic::{mosaic, pixel_m};
 use super::open;
 use super::raster::{Raster, Unreadable};
 use super::void_fill;
-use crate::features::lakes::{self, Lakes, LakesError, TAPER_POSTS};
+use crate::features::lake_bake::{self, LakesError, TAPER_POSTS};
+use crate::features::lakes::Lakes;
 use crate::field::Field;
 use crate::grid::Grid;
 use crate::projection::{Geodetic, Projection};
 use crate::store::{Extent, FORMAT_VERSION, LakeInfo, Source, Statistics, Voids, World, WorldInfo};
-use std::path::PathBuf;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// What the kernel is called in a world's description.
 const KERNEL: &str = "area-weighted where posts are coarser than samples, else bilinear; samples at pixel centres";
+
+/// Largest file of features read.
+const MAX_FEATURES_BYTES: u64 = 1 << 28;
 
 /// Bytes that are there without a file.
 #[derive(Debug, Clone, Copy)]
@@ -58,7 +63,7 @@ impl Input {
     pub fn parse(text: &str) -> (Self, f64) {
         if let Some((path, factor)) = text.rsplit_once('@')
             && let Ok(factor) = factor.parse::<f64>()
-            && !std::path::Path::new(text).exists()
+            && !Path::new(text).exists()
         {
             return (Self::File(path.into()), factor);
         }
@@ -89,11 +94,19 @@ impl Input {
 
     fn text(&self) -> Result<String, LakesError> {
         match self {
-            Self::File(path) => std::fs::read_to_string(path).map_err(|e| e.to_string()),
+            Self::File(path) => bounded_text(path),
             Self::Embedded(bytes) => String::from_utf8(bytes.content.to_vec()).map_err(|e| e.to_string()),
         }
         .map_err(|found| LakesError { expected: "a text file".into(), found })
     }
+}
+
+/// A text file of at most [`MAX_FEATURES_BYTES`].
+fn bounded_text(path: &Path) -> Result<String, String> {
+    let mut text = String::new();
+    let file = std::fs::File::open(path).map_err(|e| e.to_string())?;
+    file.take(MAX_FEATURES_BYTES + 1).read_to_string(&mut text).map_err(|e| e.to_string())?;
+    if text.len() as u64 > MAX_FEATURES_BYTES { Err("more than 256 MiB".into()) } else { Ok(text) }
 }
 
 /// Bakes a world. `progress` is told the stage and how much of it is done, 0..=1.
@@ -136,8 +149,8 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
         format_version: FORMAT_VERSION,
         name: request.name.clone(),
         projection: "transverse Mercator on WGS84 about the centre, scale 1; x east, z south, metres".into(),
-        centre_lat_deg: projection.centre().lat_deg(),
-        centre_lon_deg: projection.centre().lon_deg(),
+        centre_lat_deg: written_deg(projection.centre().lat_rad),
+        centre_lon_deg: written_deg(projection.centre().lon_rad),
         step_m: grid.step_m,
         blocks_x: grid.blocks_x,
         blocks_z: grid.blocks_z,
@@ -182,17 +195,17 @@ fn set_lakes(
     let mut level_from = Vec::new();
     for input in &request.features {
         let failed = |problem| BakeError::Features { file: input.shown(), problem };
-        let outlines = lakes::read_geojson(&input.text().map_err(failed)?, projection, grid).map_err(failed)?;
+        let outlines = lake_bake::read_geojson(&input.text().map_err(failed)?, projection, grid).map_err(failed)?;
         for outline in outlines {
             let from = if outline.level_m.is_some() { "file" } else { "median of the raster inside" };
-            if let Some(lake) = lakes::with_level(outline, grid, heights_m) {
+            if let Some(lake) = lake_bake::with_level(outline, grid, heights_m) {
                 all.push(lake);
                 level_from.push(from);
             }
         }
     }
     let lakes = Lakes::new(all);
-    let posts = lakes::burn(&lakes, grid, heights_m);
+    let posts = lake_bake::burn(&lakes, grid, heights_m);
     let infos = lakes.lakes().iter().zip(level_from).zip(posts).map(|((lake, from), posts)| LakeInfo {
         name: lake.name.clone(),
         level_m: lake.level_m,

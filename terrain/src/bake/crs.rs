@@ -29,7 +29,7 @@ pub enum Crs {
     /// x easting, y northing, metres.
     TransverseMercator {
         /// The map.
-        map: TransverseMercator,
+        map: Box<TransverseMercator>,
         /// What it is a map of.
         datum: Datum,
         /// As a person would call it.
@@ -80,7 +80,7 @@ impl Crs {
     pub fn utm(zone: u32, south: bool, datum: Datum) -> Self {
         let origin = Geodetic::from_degrees(0.0, f64::from(zone) * 6.0 - 183.0);
         let origin_m = DVec2::new(500_000.0, if south { 10_000_000.0 } else { 0.0 });
-        let map = TransverseMercator::new(datum.ellipsoid, origin, 0.9996, origin_m);
+        let map = Box::new(TransverseMercator::new(datum.ellipsoid, origin, 0.9996, origin_m));
         let name = format!("UTM zone {zone}{} {}", if south { "S" } else { "N" }, datum.name);
         Self::TransverseMercator { map, datum, name }
     }

@@ -2,7 +2,7 @@
 
 use super::extent::{MAX_POSTS, MAX_SIDE_KM, MAX_STEP_M, MIN_STEP_M};
 use super::raster::Unreadable;
-use crate::features::lakes::LakesError;
+use crate::features::lake_bake::LakesError;
 use crate::projection::ProjectionError;
 use std::fmt;
 

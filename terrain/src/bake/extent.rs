@@ -28,6 +28,7 @@ pub fn extent(
         return Err(BakeError::Step(step_m));
     }
     let centre = centre.unwrap_or_else(|| middle(sources));
+    let centre = Geodetic::from_degrees(written_deg(centre.lat_rad), written_deg(centre.lon_rad));
     let projection = Projection::new(centre).map_err(BakeError::Centre)?;
     let block_m = step_m * f64::from(CELLS);
     // A side that is whole blocks but for rounding is not rounded up.
@@ -57,6 +58,11 @@ pub fn extent(
     }
     let grid = Grid::centred(step_m, blocks_x, blocks_z).map_err(|_| BakeError::Posts(posts))?;
     Ok((projection, grid))
+}
+
+/// An angle in degrees with so few digits (0.1 mm on the ground) that writing and reading it changes nothing.
+pub fn written_deg(angle_rad: f64) -> f64 {
+    (angle_rad.to_degrees() * 1e9).round() / 1e9
 }
 
 /// The middle of the sources' bounding box in latitude and longitude, also across the date line.

@@ -20,6 +20,9 @@ use tiff::tags::Tag;
 /// No deflate or LZW stream unpacks to more than this many times its length (deflate 1032, LZW about 2730).
 const MAX_UNPACKING: u64 = 3000;
 
+/// What 16 bit writers put where they have nothing, when they do not say so; no place on Earth is so low.
+const UNDECLARED_NO_DATA: [f32; 2] = [-32_768.0, -32_767.0];
+
 type Bytes<'a> = Decoder<Cursor<&'a [u8]>>;
 
 /// Reads the first band.
@@ -44,8 +47,11 @@ pub fn read(bytes: &[u8]) -> Result<Raster, Unreadable> {
     let crs = keys.crs()?;
     let affine = georeference(&mut decoder, keys.pixel_is_point())?;
     let scale = keys.vertical_unit_m()?;
-    let no_data = text(&mut decoder, Tag::GdalNodata).and_then(|t| t.trim().parse::<f64>().ok());
-    let samples = first_band(&mut decoder, (columns as usize, rows as usize), bands as usize, no_data, scale)?;
+    let no_data = match text(&mut decoder, Tag::GdalNodata).and_then(|t| t.trim().parse::<f64>().ok()) {
+        Some(declared) => vec![declared as f32],
+        None => UNDECLARED_NO_DATA.to_vec(),
+    };
+    let samples = first_band(&mut decoder, (columns as usize, rows as usize), bands as usize, &no_data, scale)?;
     let mut raster = Raster::new((columns as usize, rows as usize), samples, affine, crs, "GeoTIFF")?;
     raster.credit = credit(&mut decoder);
     Ok(raster)
@@ -69,7 +75,7 @@ fn first_band(
     decoder: &mut Bytes,
     (columns, rows): (usize, usize),
     bands: usize,
-    no_data: Option<f64>,
+    no_data: &[f32],
     scale: f32,
 ) -> Result<Vec<f32>, Unreadable> {
     let damaged = |e: tiff::TiffError| Unreadable::new("undamaged samples", e.to_string());
@@ -80,12 +86,19 @@ fn first_band(
     if chunk_columns == 0 || chunk_rows == 0 {
         return Err(Unreadable::new("strips or tiles of at least one sample", "empty ones"));
     }
+    // tiff 0.11 turns the bytes of predicted floats once too often in big-endian files.
+    let predicted = first_u32(decoder, Tag::Predictor)? == Some(3);
+    let swapped = predicted && decoder.byte_order() == tiff::tags::ByteOrder::BigEndian;
     let across = columns.div_ceil(chunk_columns);
     let mut samples = vec![f32::NAN; columns * rows];
     for chunk in 0..across * rows.div_ceil(chunk_rows) {
         let number = u32::try_from(chunk).map_err(|_| Unreadable::new("fewer strips or tiles", chunk.to_string()))?;
         // Read first: it answers a bad number with an error, the dimensions with a panic.
-        let heights = heights(decoder.read_chunk(number).map_err(damaged)?, stride, no_data, scale)?;
+        let mut decoded = decoder.read_chunk(number).map_err(damaged)?;
+        if swapped {
+            swap_floats(&mut decoded);
+        }
+        let heights = heights(decoded, stride, no_data, scale)?;
         let (width, height) = decoder.chunk_data_dimensions(number);
         let (width, height) = (width as usize, height as usize);
         let (left, top) = (chunk % across * chunk_columns, chunk / across * chunk_rows);
@@ -103,15 +116,24 @@ fn first_band(
     Ok(samples)
 }
 
-/// Every `stride`-th sample as metres; what equals the no-data value as NaN.
-fn heights(chunk: DecodingResult, stride: usize, no_data: Option<f64>, scale: f32) -> Result<Vec<f32>, Unreadable> {
+fn swap_floats(chunk: &mut DecodingResult) {
+    match chunk {
+        DecodingResult::F32(v) => v.iter_mut().for_each(|v| *v = f32::from_bits(v.to_bits().swap_bytes())),
+        DecodingResult::F64(v) => v.iter_mut().for_each(|v| *v = f64::from_bits(v.to_bits().swap_bytes())),
+        _ => {}
+    }
+}
+
+/// Every `stride`-th sample as metres; what equals a no-data value as NaN.
+fn heights(chunk: DecodingResult, stride: usize, no_data: &[f32], scale: f32) -> Result<Vec<f32>, Unreadable> {
     macro_rules! taken {
         ($values:expr) => {
             $values
                 .iter()
                 .step_by(stride)
                 // The no-data value is compared in the samples' own type: 32 bit floats print to fewer digits.
-                .map(|&v| if no_data.is_some_and(|n| n as f32 == v as f32) { f32::NAN } else { v as f32 * scale })
+                .map(|&v| v as f32)
+                .map(|h| if no_data.iter().any(|n| *n == h) { f32::NAN } else { h * scale })
                 .collect()
         };
     }
@@ -246,6 +268,7 @@ impl GeoKeys {
                 let origin = Geodetic::from_degrees(parameter(ORIGIN_LAT, 0.0), parameter(ORIGIN_LON, 0.0));
                 let origin_m = DVec2::new(parameter(FALSE_EASTING, 0.0), parameter(FALSE_NORTHING, 0.0));
                 let map = TransverseMercator::new(datum.ellipsoid, origin, parameter(ORIGIN_SCALE, 1.0), origin_m);
+                let map = Box::new(map);
                 Ok(Crs::TransverseMercator { map, datum, name: format!("transverse Mercator {}", datum.name) })
             }
             (_, Some(method)) => Err(unsupported(format!("coordinate transformation {method}"))),
@@ -297,4 +320,20 @@ fn first_u32(decoder: &mut Bytes, tag: Tag) -> Result<Option<u32>, Unreadable> {
     let damaged = |e: tiff::TiffError| Unreadable::new(format!("a number in tag {tag:?}"), e.to_string());
     let values = decoder.find_tag_unsigned_vec::<u32>(tag).map_err(damaged)?;
     Ok(values.and_then(|v| v.first().copied()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_size_must_fit_into_the_file() {
+        assert_eq!(check_size(2_000, 100, 10, 1, 16), Ok(2_000));
+        // 1 KiB unpacks to at most 3 MB.
+        assert!(check_size(1_024, 1_500, 1_000, 1, 16).is_ok());
+        assert!(check_size(1_024, 1_600, 1_000, 1, 16).is_err());
+        assert!(check_size(usize::MAX, 23_171, 23_171, 1, 16).is_err());
+        assert!(check_size(1 << 30, u32::MAX, u32::MAX, u32::MAX, u32::MAX).is_err());
+        assert!(check_size(1_024, 0, 10, 1, 16).is_err());
+    }
 }

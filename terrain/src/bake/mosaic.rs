@@ -118,7 +118,11 @@ fn groups<'a>(grid: &Grid, projection: &Projection, sources: &'a [Raster]) -> Ve
             let (low, high) = bounds_m(projection, raster);
             // The outline is a polygon of short chords: what bulges beyond them is far less than a step or two pixels.
             let margin = DVec2::splat(grid.step_m + 2.0 * pixel_m.max_element());
-            let sampler = Sampler::new(raster, pixel_m);
+            // In longitude a pixel narrows towards the pole: it is least in a corner.
+            let (width, height) = (raster.columns as f64, raster.rows as f64);
+            let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)];
+            let sizes = corners.map(|(u, v)| size_m(projection, raster, DVec2::new(u, v)).min_element());
+            let sampler = Sampler::new(raster, pixel_m, sizes.into_iter().fold(pixel_m.min_element(), f64::min));
             let corners = sampler.needs_corners(grid.step_m);
             (raster, Layer { sampler, corners, low: low - margin, high: high + margin })
         })
@@ -143,7 +147,11 @@ fn together(a: &Raster, b: &Raster) -> bool {
 
 /// Size of a pixel in the world at the raster's middle, metres.
 pub fn pixel_m(projection: &Projection, raster: &Raster) -> DVec2 {
-    let middle = DVec2::new(0.5 * raster.columns as f64, 0.5 * raster.rows as f64);
+    size_m(projection, raster, 0.5 * DVec2::new(raster.columns as f64, raster.rows as f64))
+}
+
+/// Size in the world of a pixel with that centre, metres.
+fn size_m(projection: &Projection, raster: &Raster, middle: DVec2) -> DVec2 {
     let world = |pixel| projection.to_world(raster.place(pixel));
     let length = |half: DVec2| (world(middle + half) - world(middle - half)).length();
     DVec2::new(length(DVec2::new(0.5, 0.0)), length(DVec2::new(0.0, 0.5)))

@@ -5,7 +5,7 @@
 //! on points (SRTM, USGS, pixel-is-point GeoTIFF) are given half a pixel of area around them.
 //!
 //! Heights in metres above mean sea level, as the source has them. A void is NaN. Invariant: a sample is finite and
-//! within [`MAX_HEIGHT_M`], or NaN.
+//! within the bounds of a [`Field`](crate::Field), or NaN.
 
 use super::crs::Crs;
 use crate::field::MAX_HEIGHT_M;
@@ -85,8 +85,8 @@ impl Raster {
             return Err(Unreadable::new("as many samples as the size needs, at least one", found));
         }
         for sample in &mut samples_m {
-            // Also true of NaN and the infinities.
-            if !(sample.abs() <= MAX_HEIGHT_M) {
+            // Also true of the infinities; NaN stays what it is.
+            if sample.abs() > MAX_HEIGHT_M {
                 *sample = f32::NAN;
             }
         }

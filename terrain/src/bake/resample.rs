@@ -40,6 +40,8 @@ pub struct Sampler<'a> {
     inverse: Inverse,
     /// Size of a pixel in the world at the raster's middle, metres: along rows, along columns.
     pub pixel_m: DVec2,
+    /// Least side of any pixel, metres.
+    pub least_pixel_m: f64,
 }
 
 impl Share {
@@ -59,14 +61,14 @@ impl Share {
 
 impl<'a> Sampler<'a> {
     /// A raster whose pixels have that size in the world.
-    pub fn new(raster: &'a Raster, pixel_m: DVec2) -> Self {
-        Self { raster, inverse: raster.inverse(), pixel_m }
+    pub fn new(raster: &'a Raster, pixel_m: DVec2, least_pixel_m: f64) -> Self {
+        Self { raster, inverse: raster.inverse(), pixel_m, least_pixel_m }
     }
 
     /// Whether posts that far apart are coarser than the source along either axis, so that corners are needed.
     pub fn needs_corners(&self, step_m: f64) -> bool {
-        // A pixel's size changes over a source, in longitude by the cosine of latitude.
-        step_m > 0.7 * self.pixel_m.min_element()
+        // A tenth for the turn between the two grids, which makes the image's rectangle wider: 5.7 degrees.
+        step_m > 0.9 * self.least_pixel_m
     }
 
     /// Adds what the source says; `false` and nothing added if the post is beyond its area.
@@ -137,7 +139,7 @@ mod tests {
 
     fn asked(raster: &Raster, low: DVec2, high: DVec2) -> Share {
         let mut share = Share::default();
-        Sampler::new(raster, DVec2::ONE).add_box(low, high, &mut share);
+        Sampler::new(raster, DVec2::ONE, 1.0).add_box(low, high, &mut share);
         share
     }
 

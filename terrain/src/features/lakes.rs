@@ -4,25 +4,9 @@
 //! a point is in the lake by the even-odd rule over all its rings, so an island is a ring too. Distances are exact to
 //! the polygon's edges.
 //!
-//! At bake a lake's posts are set to its level ([`burn`]): elevation rasters show noise on water. Between the outline
-//! and [`TAPER_POSTS`] posts beyond it the ground is blended from the level to the raster in proportion to distance,
-//! because the noise does not end at the outline either; it is the one place where the bake departs from its source.
+//! How they come from a file into the ground is in [`super::lake_bake`].
 
-use crate::grid::Grid;
-use crate::projection::{Geodetic, Projection};
-use geojson::{GeoJson, GeometryValue};
 use glam::DVec2;
-use rayon::prelude::*;
-use std::fmt;
-
-/// Width of the blended shore outside an outline, posts.
-pub const TAPER_POSTS: f64 = 2.0;
-
-/// Outlines and levels are whole millimetres: so few digits that text keeps them to the bit.
-const PER_METRE: f64 = 1000.0;
-
-/// Most points of all outlines of a file: a lake district at a metre.
-const MAX_POINTS: usize = 4_000_000;
 
 /// One lake.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,99 +25,6 @@ pub struct Lakes {
     lakes: Vec<Lake>,
     /// Rectangle of each lake.
     bounds_m: Vec<(DVec2, DVec2)>,
-}
-
-/// An outline read from a file, before its level is known.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Outline {
-    /// As the file calls it; may be empty.
-    pub name: String,
-    /// The level if the file says it, metres.
-    pub level_m: Option<f64>,
-    /// World x and z in metres.
-    pub rings: Vec<Vec<DVec2>>,
-}
-
-/// Why a file has no lakes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LakesError {
-    /// What should have been there.
-    pub expected: String,
-    /// What was there.
-    pub found: String,
-}
-
-impl fmt::Display for LakesError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "expected {}, found {}", self.expected, self.found)
-    }
-}
-
-impl std::error::Error for LakesError {}
-
-/// Reads lakes from GeoJSON: (multi)polygons with the optional properties `name` and `level_m`.
-///
-/// Outlines that come nowhere near the grid are left out.
-///
-/// # Errors
-/// [`LakesError`] if it is not GeoJSON, a point is no place on Earth, or a level no height.
-pub fn read_geojson(text: &str, projection: &Projection, grid: &Grid) -> Result<Vec<Outline>, LakesError> {
-    let wrong = |expected: &str, found: String| LakesError { expected: expected.into(), found };
-    let features = match text.parse::<GeoJson>() {
-        Ok(GeoJson::FeatureCollection(collection)) => collection.features,
-        Ok(GeoJson::Feature(feature)) => vec![feature],
-        Ok(GeoJson::Geometry(_)) => return Err(wrong("features", "a bare geometry".into())),
-        Err(error) => return Err(wrong("GeoJSON", error.to_string())),
-    };
-    let mut points = 0;
-    let mut outlines = Vec::new();
-    for feature in features {
-        let property = |key| feature.properties.as_ref().and_then(|p| p.get(key));
-        let name = property("name").and_then(|v| v.as_str()).unwrap_or_default().to_owned();
-        let level_m = match property("level_m") {
-            None => None,
-            Some(value) => match value.as_f64().filter(|level| level.abs() <= f64::from(crate::field::MAX_HEIGHT_M)) {
-                Some(level) => Some(level),
-                None if value.is_null() => None,
-                None => return Err(wrong("a height in level_m", value.to_string())),
-            },
-        };
-        let polygons = match feature.geometry.map(|g| g.value) {
-            Some(GeometryValue::Polygon { coordinates }) => vec![coordinates],
-            Some(GeometryValue::MultiPolygon { coordinates }) => coordinates,
-            _ => continue,
-        };
-        let mut rings = Vec::new();
-        for ring in polygons.iter().flatten() {
-            points += ring.len();
-            if points > MAX_POINTS {
-                return Err(wrong(&format!("at most {MAX_POINTS} points"), "more".into()));
-            }
-            let mut places = Vec::with_capacity(ring.len());
-            for point in ring {
-                let (lon, lat) = match point.as_slice() {
-                    [lon, lat, ..] if lat.abs() <= 90.0 && lon.abs() <= 360.0 => (*lon, *lat),
-                    other => return Err(wrong("longitude and latitude in degrees", format!("{other:?}"))),
-                };
-                let at = projection.to_world(Geodetic::from_degrees(lat, lon));
-                places.push((at * PER_METRE).round() / PER_METRE);
-            }
-            if places.first() == places.last() {
-                places.pop();
-            }
-            if places.len() >= 3 && places.iter().all(|p| p.is_finite()) {
-                rings.push(places);
-            }
-        }
-        let outline = Outline { name, level_m, rings };
-        let (low, high) = bounds_m(&outline.rings);
-        let reach = TAPER_POSTS * grid.step_m;
-        let near = low.x <= grid.east_m() + reach && high.x >= grid.west_m - reach;
-        if near && low.y <= grid.south_m() + reach && high.y >= grid.north_m - reach {
-            outlines.push(outline);
-        }
-    }
-    Ok(outlines)
 }
 
 impl Lakes {
@@ -183,41 +74,78 @@ impl Lakes {
 
     /// What is needed to answer for points of a plan rectangle to distances of `reach_m`.
     pub fn near(&self, low: DVec2, high: DVec2, reach_m: f64) -> LakesNear {
+        let mut near = LakesNear { low, high, reach_m, shore: Vec::new(), crossing: Vec::new() };
         let reach = DVec2::splat(reach_m);
-        let mut near = LakesNear { shore: Vec::new(), crossing: Vec::new(), reach_m };
         for (lake, &(lake_low, lake_high)) in self.lakes.iter().zip(&self.bounds_m) {
-            if lake_low.cmpgt(high + reach).any() || lake_high.cmplt(low - reach).any() {
-                continue;
-            }
-            let mut crossing = Vec::new();
-            for (a, b) in edges(&lake.rings) {
-                let (edge_low, edge_high) = (a.min(b), a.max(b));
-                if edge_low.cmple(high + reach).all() && edge_high.cmpge(low - reach).all() {
-                    near.shore.push((a, b));
-                }
-                // All that a ray eastward from a point of the rectangle may cross.
-                if edge_low.y <= high.y && edge_high.y >= low.y && edge_high.x >= low.x {
-                    crossing.push((a, b));
-                }
-            }
-            if !crossing.is_empty() {
-                near.crossing.push((lake.level_m, crossing));
+            if lake_low.cmple(high + reach).all() && lake_high.cmpge(low - reach).all() {
+                near.take(lake);
             }
         }
         near
     }
 }
 
-/// The edges of lakes that matter in one plan rectangle.
+/// An edge of an outline.
+type Edge = (DVec2, DVec2);
+
+/// The edges of lakes that matter in one plan rectangle, sorted so that a point meets few of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LakesNear {
-    shore: Vec<(DVec2, DVec2)>,
-    /// Each lake's level and the edges that decide what is inside it.
-    crossing: Vec<(f64, Vec<(DVec2, DVec2)>)>,
+    low: DVec2,
+    high: DVec2,
     reach_m: f64,
+    /// For each of [`BUCKETS`] squared parts of the rectangle, row by row, the edges within reach of it and the level of
+    /// their lake; empty if there are none at all.
+    shore: Vec<Vec<(Edge, f64)>>,
+    /// For each lake its level and, for each of [`STRIPS`] parts from north to south, what a ray eastward may cross.
+    crossing: Vec<(f64, Vec<Vec<Edge>>)>,
 }
 
+const BUCKETS: usize = 16;
+const STRIPS: usize = 64;
+
 impl LakesNear {
+    fn take(&mut self, lake: &Lake) {
+        let reach = DVec2::splat(self.reach_m);
+        let mut strips = Vec::new();
+        for (a, b) in edges(&lake.rings) {
+            let (low, high) = (a.min(b), a.max(b));
+            if low.cmple(self.high + reach).all() && high.cmpge(self.low - reach).all() {
+                self.shore.resize(BUCKETS * BUCKETS, Vec::new());
+                let ((first, top), (last, bottom)) = (self.bucket(low - reach), self.bucket(high + reach));
+                for row in top..=bottom {
+                    for bucket in &mut self.shore[row * BUCKETS + first..=row * BUCKETS + last] {
+                        bucket.push(((a, b), lake.level_m));
+                    }
+                }
+            }
+            if low.y <= self.high.y && high.y >= self.low.y && high.x >= self.low.x {
+                strips.resize(STRIPS, Vec::new());
+                for strip in &mut strips[self.strip(low.y)..=self.strip(high.y)] {
+                    strip.push((a, b));
+                }
+            }
+        }
+        if !strips.is_empty() {
+            self.crossing.push((lake.level_m, strips));
+        }
+    }
+
+    /// The part that holds a point, column and row: never decreasing with either coordinate, so an edge whose box holds
+    /// the point is in the point's part.
+    fn bucket(&self, at: DVec2) -> (usize, usize) {
+        (part(at.x, self.low.x, self.high.x, BUCKETS), part(at.y, self.low.y, self.high.y, BUCKETS))
+    }
+
+    fn strip(&self, z: f64) -> usize {
+        part(z, self.low.y, self.high.y, STRIPS)
+    }
+
+    /// To which distances it answers, metres.
+    pub fn reach_m(&self) -> f64 {
+        self.reach_m
+    }
+
     /// Whether no shore is within reach and the rectangle on no lake: every distance is then the reach.
     pub fn is_dry(&self) -> bool {
         self.shore.is_empty() && self.crossing.is_empty()
@@ -225,106 +153,50 @@ impl LakesNear {
 
     /// Distance to the nearest shore within +-reach, metres, negative on a lake. Exact for points of the rectangle.
     pub fn signed_distance_m(&self, at: DVec2) -> f64 {
-        let nearest = self.shore.iter().map(|&edge| edge_distance_m(edge, at)).fold(self.reach_m, f64::min);
-        if self.level_at(at).is_some() { -nearest } else { nearest }
+        let distance_m = self.shore_at(at).map_or(self.reach_m, |(distance_m, _)| distance_m);
+        if self.level_at(at).is_some() { -distance_m } else { distance_m }
+    }
+
+    /// Distance to the nearest shore and the level of its lake, metres, if that is within reach of a point of the
+    /// rectangle.
+    pub fn shore_at(&self, at: DVec2) -> Option<(f64, f64)> {
+        let (column, row) = self.bucket(at);
+        let edges = self.shore.get(row * BUCKETS + column)?.iter();
+        edges
+            .map(|&(edge, level_m)| (edge_distance_m(edge, at), level_m))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .filter(|(distance_m, _)| *distance_m <= self.reach_m)
     }
 
     /// Level of the lake that holds a point of the rectangle, metres.
     pub fn level_at(&self, at: DVec2) -> Option<f64> {
-        self.crossing.iter().find(|(_, edges)| inside(edges.iter().copied(), at)).map(|(level_m, _)| *level_m)
+        let strip = self.strip(at.y);
+        self.crossing.iter().find(|(_, strips)| inside(strips[strip].iter().copied(), at)).map(|(level_m, _)| *level_m)
     }
 }
 
-/// The lake of an outline: its own level, or the median of the posts inside, or `None` if there are none.
-pub fn with_level(outline: Outline, grid: &Grid, heights_m: &[f32]) -> Option<Lake> {
-    let level_m = outline.level_m.or_else(|| {
-        let mut found = Vec::new();
-        for (row, mut columns) in rows_inside(&outline.rings, grid) {
-            found
-                .extend(columns.by_ref().map(|c| heights_m[row * grid.columns() as usize + c]).filter(|h| !h.is_nan()));
-        }
-        let middle = found.len() / 2;
-        (!found.is_empty()).then(|| f64::from(*found.select_nth_unstable_by(middle, f32::total_cmp).1))
-    })?;
-    Some(Lake { name: outline.name, level_m: (level_m * PER_METRE).round() / PER_METRE, rings: outline.rings })
+/// Which of `parts` equal parts of an interval holds a value; the outer ones also hold what lies beyond.
+fn part(value: f64, low: f64, high: f64, parts: usize) -> usize {
+    let share = (value - low) / (high - low).max(1e-9);
+    // A cast saturates: what is below 0, and NaN, becomes 0.
+    ((share * parts as f64) as usize).min(parts - 1)
 }
 
-/// Sets the posts on lakes to their level and blends the shore; posts without data stay without. Returns how many
-/// posts lie on each lake.
-pub fn burn(lakes: &Lakes, grid: &Grid, heights_m: &mut [f32]) -> Vec<usize> {
-    let columns = grid.columns() as usize;
-    let reach_m = TAPER_POSTS * grid.step_m;
-    heights_m.par_chunks_mut(columns).enumerate().for_each(|(row, heights)| {
-        let z = grid.z_m(row as i64);
-        // Pieces of a row, so that few edges are looked at for each post.
-        for (piece, heights) in heights.chunks_mut(64).enumerate() {
-            let x = |i: usize| grid.x_m((piece * 64 + i) as i64);
-            let near = lakes.near(DVec2::new(x(0), z), DVec2::new(x(heights.len() - 1), z), reach_m);
-            if near.is_dry() {
-                continue;
-            }
-            for (i, height) in heights.iter_mut().enumerate().filter(|(_, h)| !h.is_nan()) {
-                let at = DVec2::new(x(i), z);
-                if let Some(level_m) = near.level_at(at) {
-                    *height = level_m as f32;
-                } else if let Some((lake, distance_m)) = nearest_lake(lakes, at, near.signed_distance_m(at), reach_m) {
-                    let share = distance_m / reach_m;
-                    *height = (lake.level_m + (f64::from(*height) - lake.level_m) * share) as f32;
-                }
-            }
-        }
-    });
-    lakes.lakes.iter().map(|lake| rows_inside(&lake.rings, grid).map(|(_, columns)| columns.count()).sum()).collect()
-}
-
-/// The lake whose shore is at that distance, if it is within reach.
-fn nearest_lake(lakes: &Lakes, at: DVec2, distance_m: f64, reach_m: f64) -> Option<(&Lake, f64)> {
-    if distance_m >= reach_m {
-        return None;
-    }
-    let close = |(lake, &(low, high)): (&'_ Lake, &(DVec2, DVec2))| {
-        at.clamp(low, high).distance(at) <= distance_m
-            && edges(&lake.rings).any(|edge| edge_distance_m(edge, at) <= distance_m)
-    };
-    let index = lakes.lakes.iter().zip(&lakes.bounds_m).position(close)?;
-    Some((&lakes.lakes[index], distance_m))
-}
-
-/// Each row of posts that the rings touch, with the columns inside.
-fn rows_inside<'a>(
-    rings: &'a [Vec<DVec2>],
-    grid: &'a Grid,
-) -> impl Iterator<Item = (usize, Box<dyn Iterator<Item = usize> + 'a>)> + 'a {
-    let (low, high) = bounds_m(rings);
-    let row = |z: f64| ((z - grid.north_m) / grid.step_m).clamp(0.0, f64::from(grid.rows()));
-    let rows = row(low.y).floor() as usize..(row(high.y).ceil() as usize + 1).min(grid.rows() as usize);
-    rows.map(move |row| {
-        let z = grid.z_m(row as i64);
-        // Where the row crosses the rings, from west to east: inside between the odd and the even.
-        let mut crossings: Vec<f64> = edges(rings).filter_map(|edge| crossing_x(edge, z)).collect();
-        crossings.sort_by(f64::total_cmp);
-        let column = |x: f64| ((x - grid.west_m) / grid.step_m).ceil().clamp(0.0, f64::from(grid.columns())) as usize;
-        let runs: Vec<(usize, usize)> = crossings.chunks_exact(2).map(|c| (column(c[0]), column(c[1]))).collect();
-        let columns: Box<dyn Iterator<Item = usize>> = Box::new(runs.into_iter().flat_map(|(from, to)| from..to));
-        (row, columns)
-    })
-}
-
-fn edges(rings: &[Vec<DVec2>]) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
+pub(super) fn edges(rings: &[Vec<DVec2>]) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
     rings.iter().flat_map(|ring| ring.iter().copied().zip(ring.iter().copied().cycle().skip(1)))
 }
 
-fn bounds_m(rings: &[Vec<DVec2>]) -> (DVec2, DVec2) {
+pub(super) fn bounds_m(rings: &[Vec<DVec2>]) -> (DVec2, DVec2) {
     rings.iter().flatten().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
 }
 
 /// Where a horizontal line crosses an edge; an edge owns its northern end only, so that corners count once.
-fn crossing_x((a, b): (DVec2, DVec2), z: f64) -> Option<f64> {
+pub(super) fn crossing_x((a, b): (DVec2, DVec2), z: f64) -> Option<f64> {
     ((a.y <= z) != (b.y <= z)).then(|| a.x + (b.x - a.x) * ((z - a.y) / (b.y - a.y)))
 }
 
 /// Even-odd rule: whether an odd number of edges lies east of the point.
-fn inside(edges: impl Iterator<Item = (DVec2, DVec2)>, at: DVec2) -> bool {
+pub(super) fn inside(edges: impl Iterator<Item = (DVec2, DVec2)>, at: DVec2) -> bool {
     edges.filter(|&edge| crossing_x(edge, at.y).is_some_and(|x| x > at.x)).count() % 2 == 1
 }
 
@@ -336,7 +208,7 @@ fn edge_distance_m((a, b): (DVec2, DVec2), at: DVec2) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     fn square(low: f64, high: f64) -> Vec<DVec2> {
@@ -344,7 +216,7 @@ mod tests {
     }
 
     /// A lake of 2 km with an island of 400 m, and a pond.
-    fn lakes() -> Lakes {
+    pub fn lakes() -> Lakes {
         let pond = vec![DVec2::new(2_000.0, 0.0), DVec2::new(2_500.0, 100.0), DVec2::new(2_200.0, 700.0)];
         Lakes::new(vec![
             Lake { name: "lake".into(), level_m: 100.0, rings: vec![square(-1_000.0, 1_000.0), square(-200.0, 200.0)] },
@@ -388,45 +260,20 @@ mod tests {
     }
 
     #[test]
-    fn posts_on_a_lake_get_its_level_and_the_shore_is_blended() {
-        let grid = Grid::centred(200.0, 2, 2).unwrap();
-        let lakes = lakes();
-        let mut heights = vec![300.0; grid.posts()];
-        heights[0] = f32::NAN;
-        let posts = burn(&lakes, &grid, &mut heights);
-        let at = |x: f64, z: f64| {
-            let (column, row) = ((x - grid.west_m) / grid.step_m, (z - grid.north_m) / grid.step_m);
-            heights[row as usize * grid.columns() as usize + column as usize]
+    fn a_point_of_a_tile_meets_few_edges() {
+        // A shore of 20,000 points, as a digitised lake has, around the world's middle.
+        let shore = |i: i32| {
+            let angle = f64::from(i) * std::f64::consts::TAU / 20_000.0;
+            DVec2::from_angle(angle) * (50_000.0 + 3_000.0 * (37.0 * angle).sin())
         };
-        assert_eq!((at(-600.0, 0.0), at(-1_200.0, 0.0), at(-1_400.0, 0.0)), (100.0, 200.0, 300.0));
-        assert!(heights[0].is_nan());
-        // By the even-odd rule in the plain double loop.
-        for (number, lake) in lakes.lakes().iter().enumerate() {
-            let all = (0..grid.posts()).map(|i| (i % grid.columns() as usize, i / grid.columns() as usize));
-            let slow =
-                all.filter(|&(c, r)| inside(edges(&lake.rings), DVec2::new(grid.x_m(c as i64), grid.z_m(r as i64))));
-            assert_eq!(slow.count(), posts[number]);
-        }
-    }
-
-    #[test]
-    fn geojson_gives_outlines_and_says_what_is_wrong() {
-        let grid = Grid::centred(200.0, 4, 4).unwrap();
-        let projection = Projection::new(Geodetic::from_degrees(42.0, 78.0)).unwrap();
-        let polygon = |properties: &str, lon: &str| {
-            format!(
-                r#"{{"type":"Feature","properties":{properties},"geometry":{{"type":"Polygon","coordinates":
-                [[[{lon},42.0],[78.05,42.0],[78.05,42.05],[{lon},42.0]]]}}}}"#
-            )
-        };
-        let read = |text: &str| read_geojson(text, &projection, &grid);
-        let outlines = read(&polygon(r#"{"name":"A"}"#, "78.0")).unwrap();
-        assert_eq!((outlines.len(), outlines[0].rings[0].len(), outlines[0].level_m), (1, 3, None));
-        let heights: Vec<f32> = vec![7.0; grid.posts()];
-        assert_eq!(with_level(outlines[0].clone(), &grid, &heights).unwrap().level_m, 7.0);
-        assert_eq!(read(&polygon(r#"{"level_m":12.5}"#, "78.0")).unwrap()[0].level_m, Some(12.5));
-        for bad in ["", "{}", "[1]", &polygon(r#"{"level_m":"x"}"#, "78.0"), &polygon("{}", "1e9")] {
-            assert!(read(bad).is_err(), "{bad}");
-        }
+        let rings = vec![(0..20_000).map(shore).collect()];
+        let lakes = Lakes::new(vec![Lake { name: String::new(), level_m: 0.0, rings }]);
+        let near = |x: f64| lakes.near(DVec2::new(x, 0.0), DVec2::new(x + 6_000.0, 6_000.0), 400.0);
+        let most = |lists: &[Vec<_>]| lists.iter().map(Vec::len).max();
+        // Some 400 edges of 16 m lie in the first tile; a part and its reach are 1175 m wide.
+        assert!(most(&near(47_000.0).shore).is_some_and(|edges| edges < 120));
+        assert!(near(0.0).shore.is_empty() && near(0.0).level_at(DVec2::new(10.0, 10.0)) == Some(0.0));
+        assert!(near(0.0).crossing[0].1.iter().all(|edges| edges.len() < 30));
+        assert!(near(80_000.0).is_dry());
     }
 }

@@ -1,3 +1,4 @@
 //! What lies on the ground.
 
+pub mod lake_bake;
 pub mod lakes;

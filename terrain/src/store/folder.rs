@@ -162,8 +162,11 @@ fn write_files(folder: &Path, files: &[(&str, &[u8])], info: &str) -> Result<(),
 
 /// Puts the new folder in its place; the old one, if any, goes aside first and comes back if that fails.
 fn replace(new: &Path, path: &Path) -> Result<(), StoreError> {
-    if path.symlink_metadata().is_err() {
-        return fs::rename(new, path).map_err(|e| StoreError::io(path, e));
+    match fs::rename(new, path) {
+        Ok(()) => return Ok(()),
+        // A folder cannot be renamed onto one that is not empty: there is a world, perhaps another process's by now.
+        Err(error) if !path.join(INFO).is_file() => return Err(StoreError::io(path, error)),
+        Err(_) => {}
     }
     let old = beside(path, "old")?;
     fs::rename(path, &old).map_err(|e| StoreError::io(path, e))?;

@@ -89,7 +89,8 @@ mod tests {
         let levels = mip_chain(256);
         assert_eq!(levels.len(), 9);
         for channel in &levels[8] {
-            assert!(channel.abs_diff(128) <= 12, "{:?}", levels[8]);
+            // Two shades are sums of few lattice numbers: their mean is 0.5 to within 0.06.
+            assert!(channel.abs_diff(128) <= 15, "{:?}", levels[8]);
         }
     }
 }

@@ -258,11 +258,7 @@ mod tests {
     use super::*;
 
     fn stroke(points: &[(f32, f32)]) -> Stroke {
-        Stroke {
-            points_px: points.iter().map(|&(x, y)| Vec2::new(x, y)).collect(),
-            width_px: 2.0,
-            colour: [1.0; 4],
-        }
+        Stroke { points_px: points.iter().map(|&(x, y)| Vec2::new(x, y)).collect(), width_px: 2.0, colour: [1.0; 4] }
     }
 
     #[test]

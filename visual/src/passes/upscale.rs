@@ -69,7 +69,7 @@ impl UpscalePass {
         Self { pipeline, layout, sampler }
     }
 
-    /// Binds a small picture; keep the result as long as the picture lives.
+    /// Binds a small picture, seen as plain 8-bit values (not sRGB); keep the result as long as the picture lives.
     pub fn bind(&self, device: &wgpu::Device, small: &wgpu::TextureView) -> wgpu::BindGroup {
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("upscale"),

@@ -1,0 +1,252 @@
+//! Lakes from a file into the ground, at bake.
+//!
+//! A lake's posts are set to its level ([`burn`]): elevation rasters show noise on water. Between the outline and
+//! [`TAPER_POSTS`] posts beyond it the ground is blended from the level to the raster in proportion to distance,
+//! because the noise does not end at the outline either; it is the one place where the bake departs from its source.
+//! Without a level of its own a lake has the median of the posts inside.
+
+use super::lakes::{Lake, Lakes, LakesNear, bounds_m, crossing_x, edges};
+use crate::grid::Grid;
+use crate::projection::{Geodetic, Projection};
+use geojson::{GeoJson, GeometryValue};
+use glam::DVec2;
+use rayon::prelude::*;
+use std::fmt;
+
+/// Width of the blended shore outside an outline, posts.
+pub const TAPER_POSTS: f64 = 2.0;
+
+/// Outlines and levels are whole millimetres: so few digits that text keeps them to the bit.
+const PER_METRE: f64 = 1000.0;
+
+/// A ring with a point so far from the world's centre is left out: the map is not made for it. No lake is so long.
+const FAR_RAD: f64 = 0.5;
+
+/// Most points of all outlines of a file: a lake district at a metre.
+const MAX_POINTS: usize = 4_000_000;
+
+/// An outline read from a file, before its level is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outline {
+    /// As the file calls it; may be empty.
+    pub name: String,
+    /// The level if the file says it, metres.
+    pub level_m: Option<f64>,
+    /// World x and z in metres.
+    pub rings: Vec<Vec<DVec2>>,
+}
+
+/// Why a file has no lakes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LakesError {
+    /// What should have been there.
+    pub expected: String,
+    /// What was there.
+    pub found: String,
+}
+
+impl fmt::Display for LakesError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "expected {}, found {}", self.expected, self.found)
+    }
+}
+
+impl std::error::Error for LakesError {}
+
+/// Reads lakes from GeoJSON: (multi)polygons with the optional properties `name` and `level_m`.
+///
+/// Outlines that come nowhere near the grid are left out.
+///
+/// # Errors
+/// [`LakesError`] if it is not GeoJSON, a point is no place on Earth, or a level no height.
+pub fn read_geojson(text: &str, projection: &Projection, grid: &Grid) -> Result<Vec<Outline>, LakesError> {
+    let wrong = |expected: &str, found: String| LakesError { expected: expected.into(), found };
+    let features = match text.parse::<GeoJson>() {
+        Ok(GeoJson::FeatureCollection(collection)) => collection.features,
+        Ok(GeoJson::Feature(feature)) => vec![feature],
+        Ok(GeoJson::Geometry(_)) => return Err(wrong("features", "a bare geometry".into())),
+        Err(error) => return Err(wrong("GeoJSON", error.to_string())),
+    };
+    let mut points = 0;
+    let mut outlines = Vec::new();
+    for feature in features {
+        let property = |key| feature.properties.as_ref().and_then(|p| p.get(key));
+        let name = property("name").and_then(|v| v.as_str()).unwrap_or_default().to_owned();
+        let level_m = match property("level_m") {
+            None => None,
+            Some(value) => match value.as_f64().filter(|level| level.abs() <= f64::from(crate::field::MAX_HEIGHT_M)) {
+                Some(level) => Some(level),
+                None if value.is_null() => None,
+                None => return Err(wrong("a height in level_m", value.to_string())),
+            },
+        };
+        let polygons = match feature.geometry.map(|g| g.value) {
+            Some(GeometryValue::Polygon { coordinates }) => vec![coordinates],
+            Some(GeometryValue::MultiPolygon { coordinates }) => coordinates,
+            _ => continue,
+        };
+        let mut rings = Vec::new();
+        for ring in polygons.iter().flatten() {
+            points += ring.len();
+            if points > MAX_POINTS {
+                return Err(wrong(&format!("at most {MAX_POINTS} points"), "more".into()));
+            }
+            let mut places = Vec::with_capacity(ring.len());
+            let mut near = true;
+            for point in ring {
+                let (lon, lat) = match point.as_slice() {
+                    [lon, lat, ..] if lat.abs() <= 90.0 && lon.abs() <= 360.0 => (*lon, *lat),
+                    other => return Err(wrong("longitude and latitude in degrees", format!("{other:?}"))),
+                };
+                let place = Geodetic::from_degrees(lat, lon);
+                near &= angle_rad(place, projection.centre()) < FAR_RAD;
+                places.push((projection.to_world(place) * PER_METRE).round() / PER_METRE);
+            }
+            if places.first() == places.last() {
+                places.pop();
+            }
+            if near && places.len() >= 3 && places.iter().all(|p| p.is_finite()) {
+                rings.push(places);
+            }
+        }
+        let outline = Outline { name, level_m, rings };
+        let (low, high) = bounds_m(&outline.rings);
+        let reach = TAPER_POSTS * grid.step_m;
+        let near = low.x <= grid.east_m() + reach && high.x >= grid.west_m - reach;
+        if near && low.y <= grid.south_m() + reach && high.y >= grid.north_m - reach {
+            outlines.push(outline);
+        }
+    }
+    Ok(outlines)
+}
+
+/// The lake of an outline: its own level, or the median of the posts inside, or `None` if there are none.
+pub fn with_level(outline: Outline, grid: &Grid, heights_m: &[f32]) -> Option<Lake> {
+    let level_m = outline.level_m.or_else(|| {
+        let mut found = Vec::new();
+        for (row, mut columns) in rows_inside(&outline.rings, grid) {
+            found
+                .extend(columns.by_ref().map(|c| heights_m[row * grid.columns() as usize + c]).filter(|h| !h.is_nan()));
+        }
+        let middle = found.len() / 2;
+        (!found.is_empty()).then(|| f64::from(*found.select_nth_unstable_by(middle, f32::total_cmp).1))
+    })?;
+    Some(Lake { name: outline.name, level_m: (level_m * PER_METRE).round() / PER_METRE, rings: outline.rings })
+}
+
+/// Sets the posts on lakes to their level and blends the shore; posts without data stay without. Returns how many
+/// posts lie on each lake.
+pub fn burn(lakes: &Lakes, grid: &Grid, heights_m: &mut [f32]) -> Vec<usize> {
+    /// Posts along a side of the squares worked on.
+    const SIDE: usize = 64;
+    let columns = grid.columns() as usize;
+    let reach_m = TAPER_POSTS * grid.step_m;
+    heights_m.par_chunks_mut(columns * SIDE).enumerate().for_each(|(band, heights)| {
+        let at = |column: usize, row: usize| DVec2::new(grid.x_m(column as i64), grid.z_m((band * SIDE + row) as i64));
+        let rows = heights.len() / columns;
+        for first in (0..columns).step_by(SIDE) {
+            let last = (first + SIDE).min(columns) - 1;
+            let near = lakes.near(at(first, 0), at(last, rows - 1), reach_m);
+            if near.is_dry() {
+                continue;
+            }
+            for row in 0..rows {
+                for column in first..=last {
+                    set_post(&near, at(column, row), &mut heights[row * columns + column]);
+                }
+            }
+        }
+    });
+    lakes.lakes().iter().map(|lake| rows_inside(&lake.rings, grid).map(|(_, columns)| columns.count()).sum()).collect()
+}
+
+fn set_post(near: &LakesNear, at: DVec2, height_m: &mut f32) {
+    if height_m.is_nan() {
+        return;
+    }
+    if let Some(level_m) = near.level_at(at) {
+        *height_m = level_m as f32;
+    } else if let Some((distance_m, level_m)) = near.shore_at(at) {
+        let share = distance_m / near.reach_m();
+        *height_m = (level_m + (f64::from(*height_m) - level_m) * share) as f32;
+    }
+}
+
+/// Each row of posts that the rings touch, with the columns inside.
+fn rows_inside<'a>(
+    rings: &'a [Vec<DVec2>],
+    grid: &'a Grid,
+) -> impl Iterator<Item = (usize, Box<dyn Iterator<Item = usize> + 'a>)> + 'a {
+    let (low, high) = bounds_m(rings);
+    let row = |z: f64| ((z - grid.north_m) / grid.step_m).clamp(0.0, f64::from(grid.rows()));
+    let rows = row(low.y).floor() as usize..(row(high.y).ceil() as usize + 1).min(grid.rows() as usize);
+    rows.map(move |row| {
+        let z = grid.z_m(row as i64);
+        // Where the row crosses the rings, from west to east: inside between the odd and the even.
+        let mut crossings: Vec<f64> = edges(rings).filter_map(|edge| crossing_x(edge, z)).collect();
+        crossings.sort_by(f64::total_cmp);
+        let column = |x: f64| ((x - grid.west_m) / grid.step_m).ceil().clamp(0.0, f64::from(grid.columns())) as usize;
+        let runs: Vec<(usize, usize)> = crossings.chunks_exact(2).map(|c| (column(c[0]), column(c[1]))).collect();
+        let columns: Box<dyn Iterator<Item = usize>> = Box::new(runs.into_iter().flat_map(|(from, to)| from..to));
+        (row, columns)
+    })
+}
+
+/// Angle between two places seen from the centre of a sphere.
+fn angle_rad(a: Geodetic, b: Geodetic) -> f64 {
+    let half = |d: f64| (0.5 * d).sin().powi(2);
+    let across = a.lat_rad.cos() * b.lat_rad.cos() * half(a.lon_rad - b.lon_rad);
+    2.0 * (half(a.lat_rad - b.lat_rad) + across).min(1.0).sqrt().asin()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::lakes::{inside, tests::lakes};
+    use super::*;
+
+    #[test]
+    fn posts_on_a_lake_get_its_level_and_the_shore_is_blended() {
+        let grid = Grid::centred(200.0, 2, 2).unwrap();
+        let lakes = lakes();
+        let mut heights = vec![300.0; grid.posts()];
+        heights[0] = f32::NAN;
+        let posts = burn(&lakes, &grid, &mut heights);
+        let at = |x: f64, z: f64| {
+            let (column, row) = ((x - grid.west_m) / grid.step_m, (z - grid.north_m) / grid.step_m);
+            heights[row as usize * grid.columns() as usize + column as usize]
+        };
+        assert_eq!((at(-600.0, 0.0), at(-1_200.0, 0.0), at(-1_400.0, 0.0)), (100.0, 200.0, 300.0));
+        assert!(heights[0].is_nan());
+        // By the even-odd rule in the plain double loop.
+        for (number, lake) in lakes.lakes().iter().enumerate() {
+            let all = (0..grid.posts()).map(|i| (i % grid.columns() as usize, i / grid.columns() as usize));
+            let slow =
+                all.filter(|&(c, r)| inside(edges(&lake.rings), DVec2::new(grid.x_m(c as i64), grid.z_m(r as i64))));
+            assert_eq!(slow.count(), posts[number]);
+        }
+    }
+
+    #[test]
+    fn geojson_gives_outlines_and_says_what_is_wrong() {
+        let grid = Grid::centred(200.0, 4, 4).unwrap();
+        let projection = Projection::new(Geodetic::from_degrees(42.0, 78.0)).unwrap();
+        let polygon = |properties: &str, lon: &str| {
+            format!(
+                r#"{{"type":"Feature","properties":{properties},"geometry":{{"type":"Polygon","coordinates":
+                [[[{lon},42.0],[78.05,42.0],[78.05,42.05],[{lon},42.0]]]}}}}"#
+            )
+        };
+        let read = |text: &str| read_geojson(text, &projection, &grid);
+        let outlines = read(&polygon(r#"{"name":"A"}"#, "78.0")).unwrap();
+        assert_eq!((outlines.len(), outlines[0].rings[0].len(), outlines[0].level_m), (1, 3, None));
+        let heights: Vec<f32> = vec![7.0; grid.posts()];
+        assert_eq!(with_level(outlines[0].clone(), &grid, &heights).unwrap().level_m, 7.0);
+        assert_eq!(read(&polygon(r#"{"level_m":12.5}"#, "78.0")).unwrap()[0].level_m, Some(12.5));
+        for bad in ["", "{}", "[1]", &polygon(r#"{"level_m":"x"}"#, "78.0"), &polygon("{}", "1e9")] {
+            assert!(read(bad).is_err(), "{bad}");
+        }
+        // On the other side of the Earth, and next door.
+        assert!(read(&polygon("{}", "-102.0")).unwrap().is_empty());
+        assert!(read(&polygon("{}", "77.9").replace("42.0", "52.0")).unwrap().is_empty());
+    }
+}
