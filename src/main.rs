@@ -16,6 +16,7 @@ mod points;
 mod progress;
 mod report;
 mod scenery;
+mod trade;
 mod values;
 mod verbs;
 

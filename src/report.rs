@@ -471,6 +471,8 @@ pub struct Skipped {
 pub struct Trade {
     /// Every setting that trades accuracy for cost.
     pub knobs: Vec<Knob>,
+    /// How it was measured.
+    pub conditions: String,
 }
 
 /// One setting, measured.
@@ -501,6 +503,12 @@ pub struct KnobPoint {
     pub triangles: Option<u64>,
     /// Bytes held, where the knob changes them.
     pub bytes: Option<u64>,
+    /// The largest error, in the unit of `error`.
+    pub error_max: Option<f64>,
+    /// Root mean square difference of the picture from the reference's, grey of 255.
+    pub image_rms_grey: Option<f64>,
+    /// Time to make the world anew, where the knob needs it.
+    pub bake_s: Option<f64>,
 }
 
 impl FrameMs {
@@ -613,9 +621,10 @@ mod tests {
         );
         let knob = Knob { points: vec![KnobPoint::default()], ..Knob::default() };
         assert_eq!(
-            names(&Trade { knobs: vec![knob] }),
+            names(&Trade { knobs: vec![knob], ..Trade::default() }),
             "knobs[].name knobs[].unit knobs[].error_unit knobs[].cost_unit knobs[].points[].setting \
-             knobs[].points[].error knobs[].points[].cost knobs[].points[].triangles knobs[].points[].bytes"
+             knobs[].points[].error knobs[].points[].cost knobs[].points[].triangles knobs[].points[].bytes \
+             knobs[].points[].error_max knobs[].points[].image_rms_grey knobs[].points[].bake_s conditions"
         );
     }
 

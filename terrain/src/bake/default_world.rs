@@ -106,7 +106,7 @@ mod tests {
         let started = std::time::Instant::now();
         let world = World::read(&a).unwrap();
         println!("read in {:.1} ms", started.elapsed().as_secs_f64() * 1e3);
-        assert_eq!(world.projection, bake(&request(), &mut |_, _| ()).unwrap().projection);
+        assert_eq!(world.projection, bake(&default_request(), &mut |_, _| ()).unwrap().projection);
         // The lake is flat, and its posts are the level to the bit.
         assert_eq!(world.info.lakes[0].level_m, 1607.0);
         let level = world.field.heights_m().iter().filter(|h| **h == 1607.0).count();
