@@ -4,7 +4,6 @@
 //! f64; the attitude given here turns view axes (x right, y up, z backward) into the world's.
 
 use crate::hud::{self, Anchor, HudInput};
-use crate::moment::Moment;
 use crate::scenery;
 use glam::{DQuat, DVec3, Vec2};
 use sim::input::Head;
@@ -33,11 +32,6 @@ pub struct Captions<'a> {
 pub fn height_at(area: &Area) -> Arc<HeightAt> {
     let area = area.clone();
     Arc::new(move |x_m, z_m| area.height_m(x_m, z_m))
-}
-
-/// A moment as the simulation keeps it.
-pub fn utc(moment: Moment) -> UtcTime {
-    UtcTime { unix_ns: (moment.unix_s * 1e9).round() as i64 }
 }
 
 /// The eye, world metres.
@@ -71,7 +65,7 @@ impl Sun {
     /// [`crate::failure::Failure::Failed`] where its position is not known.
     pub fn new(world: &World, date: UtcTime) -> Result<Self, crate::failure::Failure> {
         let second = date.unix_ns.div_euclid(1_000_000_000);
-        let to_sun = scenery::to_sun(world, Moment { unix_s: second as f64 })?;
+        let to_sun = scenery::to_sun(world, UtcTime { unix_ns: second * 1_000_000_000 })?;
         Ok(Self { second, to_sun })
     }
 
@@ -151,7 +145,9 @@ mod tests {
         let scene = sim::Scene::new(AircraftState::level(DVec3::new(0.0, 3e3, 0.0), 0.0, 200.0), UtcTime { unix_ns: 0 });
         let snapshot = scene.snapshot();
         let looks = |right_rad, up_rad| {
-            attitude(&snapshot, &Head { right_rad, up_rad, ..Head::default() }) * DVec3::NEG_Z
+            let mut head = Head::default();
+            (head.right_rad, head.up_rad) = (right_rad, up_rad);
+            attitude(&snapshot, &head) * DVec3::NEG_Z
         };
         assert!((looks(0.0, 0.0) - DVec3::NEG_Z).length() < 1e-12);
         assert!((looks(std::f64::consts::FRAC_PI_2, 0.0) - DVec3::X).length() < 1e-12);

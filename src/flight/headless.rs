@@ -32,7 +32,7 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
     let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), look);
     let length = Length::of(args, true);
     let plan = Plan::new(args, length, LOCKSTEP_HZ, &world, &scenery.area)?;
-    let date = stage::utc(args.view.time.unwrap_or_else(|| scenery::default_moment(&world)));
+    let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
     let height_at = stage::height_at(&scenery.area);
     let mut scene = plan.scene(date);
     let mut sun = Sun::new(&world, date)?;

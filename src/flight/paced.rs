@@ -41,7 +41,7 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), look);
     let length = Length::of(args, true);
     let plan = Plan::new(args, length, hz, &world, &scenery.area)?;
-    let date = stage::utc(args.view.time.unwrap_or_else(|| scenery::default_moment(&world)));
+    let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
     let height_at = stage::height_at(&scenery.area);
     let mut scene = plan.scene(date);
     sim::lockstep(&mut scene, &*height_at, 1);

@@ -149,7 +149,7 @@ impl<'a> Cockpit<'a> {
         let scenery = Scenery::new(gpu.clone(), format, self.world.clone(), look);
         if self.flown.is_none() {
             let plan = Plan::new(self.args, self.length, LOCKSTEP_HZ, &self.world, &scenery.area)?;
-            let date = stage::utc(self.args.view.time.unwrap_or_else(|| scenery::default_moment(&self.world)));
+            let date = self.args.view.time.unwrap_or_else(|| scenery::default_moment(&self.world));
             let height_at = stage::height_at(&scenery.area);
             let mut scene = plan.scene(date);
             sim::lockstep(&mut scene, &*height_at, 1);
