@@ -8,6 +8,7 @@
 mod args;
 mod failure;
 mod flight;
+mod gpu_proof;
 mod hud;
 mod open_world;
 mod output;

@@ -217,6 +217,8 @@ pub struct EdgesChecked {
 pub struct Far {
     /// Largest distance found.
     pub error_max_m: f64,
+    /// Largest distance found in each ring.
+    pub errors_max_m: Vec<f64>,
     /// Largest allowed in each ring.
     pub limits_m: Vec<f64>,
     /// Places beyond their ring's limit. Must be 0.
@@ -228,8 +230,14 @@ pub struct Far {
 pub struct Pop {
     /// Largest move of a point, on axis.
     pub max_px: f64,
-    /// Largest change of grey, of 255; null without an adapter.
+    /// Largest vertical move of a point, metres.
+    pub max_move_m: f64,
+    /// Largest mean change of grey over a block, of 255; null without an adapter.
     pub max_grey: Option<f64>,
+    /// Largest change of grey of one pixel, of 255; null without an adapter.
+    pub worst_pixel_grey: Option<f64>,
+    /// Switches whose grey was looked at; null without an adapter.
+    pub grey_switches: Option<u64>,
     /// Switches looked at.
     pub switches: u64,
     /// Length of the track.
@@ -243,6 +251,8 @@ pub struct Near {
     pub height_changes: u64,
     /// Largest difference from the ground. Must be 0.
     pub max_difference_m: f64,
+    /// Places where the drawn surface was compared with the ground.
+    pub places: u64,
 }
 
 /// The picture against the ground.
@@ -252,6 +262,8 @@ pub struct Gpu {
     pub vertices_checked: u64,
     /// Heights that are not the posts to the bit. Must be 0.
     pub height_mismatches: u64,
+    /// Posts that two blocks place differently on the device. Must be 0.
+    pub position_mismatches: u64,
     /// Pixels whose depth was compared.
     pub pixels_checked: u64,
     /// Pixels whose depth is outside its bounds. Must be 0.
@@ -613,9 +625,10 @@ mod tests {
         assert_eq!(
             names(&verify),
             "t_junctions position_mismatches edges_checked.templates edges_checked.pairs edges_checked.window eyes \
-             far.error_max_m far.limits_m far.violations pop.max_px pop.max_grey pop.switches pop.track_km \
-             near.height_changes near.max_difference_m gpu.vertices_checked gpu.height_mismatches gpu.pixels_checked \
-             gpu.pixels_outside gpu.pixels_excluded"
+             far.error_max_m far.errors_max_m far.limits_m far.violations pop.max_px pop.max_move_m pop.max_grey \
+             pop.worst_pixel_grey pop.grey_switches pop.switches pop.track_km near.height_changes \
+             near.max_difference_m near.places gpu.vertices_checked gpu.height_mismatches gpu.position_mismatches \
+             gpu.pixels_checked gpu.pixels_outside gpu.pixels_excluded"
         );
         let features = BTreeMap::from([("highways".to_owned(), FeatureCount::default())]);
         let (sources, lakes) = (vec![Source::default()], vec![Lake::default()]);

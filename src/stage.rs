@@ -142,7 +142,8 @@ mod tests {
 
     #[test]
     fn the_head_turns_the_view_about_the_pilots_axes() {
-        let scene = sim::Scene::new(AircraftState::level(DVec3::new(0.0, 3e3, 0.0), 0.0, 200.0), UtcTime { unix_ns: 0 });
+        let scene =
+            sim::Scene::new(AircraftState::level(DVec3::new(0.0, 3e3, 0.0), 0.0, 200.0), UtcTime { unix_ns: 0 });
         let snapshot = scene.snapshot();
         let looks = |right_rad, up_rad| {
             let mut head = Head::default();

@@ -42,7 +42,8 @@ fn two_lockstep_flights_are_the_same_and_another_is_another() {
     // 6.7 km in 40 frames: over a block border, with rows to build and rings to switch.
     let Some(first) = flown(&world, "determinism-1", "10000") else { return };
     let Some(second) = flown(&world, "determinism-2", "10000") else { return };
-    let hashes = |report: &Value| [&report["sim"]["hash"], &report["mesh_hash"], &report["image_hash"]].map(Value::clone);
+    let hashes =
+        |report: &Value| [&report["sim"]["hash"], &report["mesh_hash"], &report["image_hash"]].map(Value::clone);
     assert!(hashes(&first).iter().all(|hash| hash.as_str().is_some_and(|text| text.len() == 16)), "{first}");
     assert_eq!(hashes(&first), hashes(&second), "simulation, meshes, pictures");
 

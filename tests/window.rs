@@ -149,8 +149,7 @@ fn a_window_takes_keys_pauses_takes_pictures_and_quits() {
     // What the screen shows is a picture too.
     if is_installed("import") {
         let file = folder.join("screen.PNG");
-        let done =
-            Command::new("import").env("DISPLAY", &display).args(["-window", &window]).arg(&file).status();
+        let done = Command::new("import").env("DISPLAY", &display).args(["-window", &window]).arg(&file).status();
         if done.is_ok_and(|status| status.success()) {
             let screen = image::open(&file).expect("a picture of the screen").to_rgba8();
             assert!(colours(&screen) > 100, "{} colours on the screen", colours(&screen));

@@ -47,8 +47,8 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     sim::lockstep(&mut scene, &*height_at, 1);
     // Held until the first picture, which takes as long as filling the window does.
     scene.clock.set_paused(true);
-    let sim = SimThread::start(scene, height_at)
-        .map_err(|error| Failure::while_doing("starting the simulation", error))?;
+    let sim =
+        SimThread::start(scene, height_at).map_err(|error| Failure::while_doing("starting the simulation", error))?;
     let mut sun = Sun::new(&world, date)?;
     let head = Head::default();
     let period = Duration::from_secs_f64(1.0 / hz);
@@ -102,12 +102,7 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
             last.slowed_s
         ));
     }
-    let ending = Ending {
-        mode: "paced",
-        flown_s,
-        steps: last.step,
-        sim_hash: report::hash(last.hash()),
-    };
+    let ending = Ending { mode: "paced", flown_s, steps: last.step, sim_hash: report::hash(last.hash()) };
     let mut report = record.report(&scenery, &ending);
     let taken = pictures::take(scenery, &plan, date, &args.shots)?;
     report.image_hash = Some(taken.hash.shown());

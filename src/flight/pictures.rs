@@ -3,9 +3,9 @@
 //! Taken after the flight by a scenery of their own that waits for every block, so that they do not depend on how far was
 //! flown or on the machine's speed; nothing in them is measured time.
 
+use super::device_failed;
 use super::plan::{PicturePlace, Plan};
 use super::record::RunningHash;
-use super::device_failed;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::scenery::{Look, Scenery};
@@ -37,8 +37,7 @@ pub struct Taken {
 pub fn take(flown: Scenery, plan: &Plan, date: sim::UtcTime, folder: &Path) -> Result<Taken, Failure> {
     let bar = Progress::new("taking pictures");
     let Scenery { gpu, world, look, .. } = flown;
-    let mut scenery =
-        Scenery::new(gpu, capture::FORMAT, world.clone(), Look { wait: true, keep_depth: false, ..look });
+    let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), Look { wait: true, keep_depth: false, ..look });
     let size_px = look.size_px;
     let target = Offscreen::new(&scenery.gpu, size_px).map_err(device_failed)?;
     let height_at = stage::height_at(&scenery.area);

@@ -4,7 +4,7 @@
 //! takes over. The eye is sampled after the input was read and after the next image has been waited for, right before the
 //! frame is encoded. A frame's time is from one frame's beginning to the next's.
 
-use super::plan::{Length, LOCKSTEP_HZ, Plan};
+use super::plan::{LOCKSTEP_HZ, Length, Plan};
 use super::record::{Ending, Record};
 use crate::args::FlyArgs;
 use crate::failure::Failure;
@@ -221,7 +221,8 @@ impl<'a> Cockpit<'a> {
         if let Some(took) = took {
             self.record.add_interval(took);
             let ms = took.as_secs_f64() * 1e3;
-            self.frame_ms = if self.frame_ms.is_finite() { self.frame_ms + SMOOTHING * (ms - self.frame_ms) } else { ms };
+            self.frame_ms =
+                if self.frame_ms.is_finite() { self.frame_ms + SMOOTHING * (ms - self.frame_ms) } else { ms };
         }
         let (controls, commands) = self.input.poll(wall_s);
         for command in commands {
@@ -327,12 +328,7 @@ impl<'a> Cockpit<'a> {
         };
         let flown_s = flown.begun.map_or(0.0, |begun| begun.elapsed().as_secs_f64());
         let last = flown.sim.stop().map_err(|error| Failure::Failed(error.to_string()))?.snapshot();
-        let ending = Ending {
-            mode: "window",
-            flown_s,
-            steps: last.step,
-            sim_hash: report::hash(last.hash()),
-        };
+        let ending = Ending { mode: "window", flown_s, steps: last.step, sim_hash: report::hash(last.hash()) };
         let shots = self.pictures.iter().map(|path| path.display().to_string()).collect();
         Ok(Fly { shots, ..self.record.report(&scenery, &ending) })
     }

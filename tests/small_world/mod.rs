@@ -41,7 +41,7 @@ pub fn write(test: &str) -> PathBuf {
             voids: Voids { posts: 0, share: 0.0, largest_posts: 0, beyond_posts: 0 },
             sources: Vec::new(),
             lakes: Vec::new(),
-            features: Default::default(),
+            features: std::collections::BTreeMap::new(),
             files: Vec::new(),
         },
         field: Arc::new(field),

@@ -133,6 +133,26 @@ pub fn read_texels(gpu: &Gpu, texture: &wgpu::Texture, aspect: wgpu::TextureAspe
     Ok(texels)
 }
 
+/// Waits and reads a buffer of 32-bit words.
+///
+/// # Errors
+/// [`GpuError::Lost`], [`GpuError::Refused`].
+pub fn read_words(gpu: &Gpu, words: &wgpu::Buffer) -> Result<Vec<u32>, GpuError> {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size: words.size(),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(words, 0, &buffer, 0, words.size());
+    gpu.queue.submit([encoder.finish()]);
+    buffer.map_async(wgpu::MapMode::Read, .., |_| ());
+    gpu.wait()?;
+    let mapped = buffer.get_mapped_range(..).map_err(|error| GpuError::Refused(error.to_string()))?;
+    Ok(mapped.as_chunks::<4>().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect())
+}
+
 impl Picture {
     /// Writes a PNG file, making its folder where needed.
     ///

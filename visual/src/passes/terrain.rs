@@ -14,9 +14,11 @@ use crate::gpu::Gpu;
 use crate::shaders;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
+use std::sync::Arc;
 use terrain::block::mesh::TILE;
-use terrain::block::window::{Draw, Level, MAX_BLOCKS, Window};
-use terrain::{CELLS, Grid};
+use terrain::block::payload::Mesh;
+use terrain::block::window::{Draw, Level, MAX_BLOCKS, Upload, Window};
+use terrain::{BlockIndex, CELLS, Grid};
 
 /// Beyond this the detail texture's mips are as good as even: a pixel spans more than its longest feature.
 const DETAIL_REACH_M: f64 = 9_000.0;
@@ -234,6 +236,17 @@ impl Terrain {
             self.draws.resize(view_index + 1, Vec::new());
         }
         self.draws[view_index] = draws;
+    }
+
+    /// Draws a block of the first prepared view with another mesh, until the view is prepared again. For proofs: the slot
+    /// keeps the list, so the window must not draw it afterwards.
+    pub fn show_mesh(&mut self, gpu: &Gpu, block: BlockIndex, mesh: &Mesh) {
+        let indices = Arc::new(mesh.indices().clone());
+        let Some(draw) = self.draws.first_mut().and_then(|draws| draws.iter_mut().find(|d| d.block == block)) else {
+            return;
+        };
+        draw.level = Level::Own { indices: indices.len() as u32 };
+        self.textures.apply(&gpu.queue, &Upload::Indices { slot: draw.slot, indices });
     }
 
     /// Records a prepared view's ground; group 0 must be bound.
