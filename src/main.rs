@@ -3,9 +3,9 @@
 //! stdout carries the verb's report only (see [`output`]); all else goes to stderr. Exit status: 0 done, 1 failed,
 //! 2 misuse.
 #![forbid(unsafe_code)]
-#![allow(dead_code, reason = "to be removed when the verbs are filled: reports and values wait for them")]
 
 mod args;
+mod bench;
 mod failure;
 mod flight;
 mod gpu_proof;
@@ -18,6 +18,7 @@ mod report;
 mod scenery;
 mod stage;
 mod thread_time;
+mod trade;
 mod values;
 mod verbs;
 

@@ -483,6 +483,10 @@ pub struct BenchResult {
     pub ratio_ci: Option<[f64; 2]>,
     /// Rounds, each with both.
     pub rounds: u32,
+    /// First and third quartile of `ours` over the rounds.
+    pub quartiles: Option<[f64; 2]>,
+    /// What one must know to read the figure.
+    pub note: Option<String>,
 }
 
 /// What is compared with.
@@ -510,6 +514,8 @@ pub struct Skipped {
 pub struct Trade {
     /// Every setting that trades accuracy for cost.
     pub knobs: Vec<Knob>,
+    /// How it was measured.
+    pub conditions: String,
 }
 
 /// One setting, measured.
@@ -540,6 +546,12 @@ pub struct KnobPoint {
     pub triangles: Option<u64>,
     /// Bytes held, where the knob changes them.
     pub bytes: Option<u64>,
+    /// The largest error, in the unit of `error`.
+    pub error_max: Option<f64>,
+    /// Root mean square difference of the picture from the reference's, grey of 255.
+    pub image_rms_grey: Option<f64>,
+    /// Time to make the world anew, where the knob needs it.
+    pub bake_s: Option<f64>,
 }
 
 impl FrameMs {
@@ -652,13 +664,14 @@ mod tests {
         assert_eq!(
             names(&Bench { results: vec![result], skipped: vec![Skipped::default()] }),
             "results[].name results[].unit results[].ours results[].yardstick.name results[].yardstick.version \
-             results[].yardstick.value results[].ratio results[].ratio_ci results[].rounds skipped[].name skipped[].reason"
+             results[].yardstick.value results[].ratio results[].ratio_ci results[].rounds results[].quartiles results[].note skipped[].name skipped[].reason"
         );
         let knob = Knob { points: vec![KnobPoint::default()], ..Knob::default() };
         assert_eq!(
-            names(&Trade { knobs: vec![knob] }),
+            names(&Trade { knobs: vec![knob], ..Trade::default() }),
             "knobs[].name knobs[].unit knobs[].error_unit knobs[].cost_unit knobs[].points[].setting \
-             knobs[].points[].error knobs[].points[].cost knobs[].points[].triangles knobs[].points[].bytes"
+             knobs[].points[].error knobs[].points[].cost knobs[].points[].triangles knobs[].points[].bytes \
+             knobs[].points[].error_max knobs[].points[].image_rms_grey knobs[].points[].bake_s conditions"
         );
     }
 

@@ -52,27 +52,43 @@ pub struct Look {
 impl Look {
     /// From flags; what is not given comes from the preset, and that from the adapter.
     pub fn of(args: &ViewArgs, adapter: AdapterKind, wait: bool) -> Self {
-        let quality = args.quality.unwrap_or(match adapter {
+        let preset = Self::preset(args.quality.unwrap_or(match adapter {
             AdapterKind::Hardware => Quality::Fine,
             AdapterKind::Software => Quality::Standard,
-        });
+        }));
+        Self {
+            size_px: [args.size.width_px, args.size.height_px],
+            fov_y_rad: args.fov_y_deg.to_radians(),
+            visibility_m: args.visibility_m,
+            window: args.window.unwrap_or(preset.window),
+            all_level_0: args.all_level_0,
+            msaa: args.msaa.unwrap_or(preset.msaa),
+            render_scale: args.render_scale.map_or(preset.render_scale, |scale| scale as f32),
+            ground: TerrainLook { overlay: args.overlay == Some(Overlay::Blocks), ..preset.ground },
+            wait,
+            ..preset
+        }
+    }
+
+    /// A preset alone: 1280 x 720 pixels, 60 degrees, waiting for every block.
+    pub fn preset(quality: Quality) -> Self {
         let (window, msaa, render_scale, detail) = match quality {
             Quality::Fine => (24, 4, 1.0, 2),
             Quality::Standard => (24, 1, 1.0, 1),
             Quality::Software => (12, 1, 0.67, 0),
         };
         Self {
-            size_px: [args.size.width_px, args.size.height_px],
-            fov_y_rad: args.fov_y_deg.to_radians(),
-            visibility_m: args.visibility_m,
-            window: args.window.unwrap_or(window),
+            size_px: [1280, 720],
+            fov_y_rad: 60f64.to_radians(),
+            visibility_m: None,
+            window,
             limit_px: 1.0,
             near_radius_m: None,
-            all_level_0: args.all_level_0,
-            msaa: args.msaa.unwrap_or(msaa),
-            render_scale: args.render_scale.map_or(render_scale, |scale| scale as f32),
-            ground: TerrainLook { detail, overlay: args.overlay == Some(Overlay::Blocks), wireframe: false },
-            wait,
+            all_level_0: false,
+            msaa,
+            render_scale,
+            ground: TerrainLook { detail, overlay: false, wireframe: false },
+            wait: true,
             keep_depth: false,
         }
     }

@@ -72,6 +72,22 @@ impl Offscreen {
         Ok(Self { texture, view, size_px })
     }
 
+    /// Clears the target to black and submits: the least that a frame can be.
+    pub fn clear(&self, gpu: &Gpu) {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("clear") });
+        drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("clear"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &self.view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            ..wgpu::RenderPassDescriptor::default()
+        }));
+        gpu.queue.submit([encoder.finish()]);
+    }
+
     /// Waits for the drawing and reads the picture.
     ///
     /// # Errors
