@@ -217,6 +217,8 @@ pub struct EdgesChecked {
 pub struct Far {
     /// Largest distance found.
     pub error_max_m: f64,
+    /// Largest distance found in each ring.
+    pub errors_max_m: Vec<f64>,
     /// Largest allowed in each ring.
     pub limits_m: Vec<f64>,
     /// Places beyond their ring's limit. Must be 0.
@@ -228,8 +230,14 @@ pub struct Far {
 pub struct Pop {
     /// Largest move of a point, on axis.
     pub max_px: f64,
-    /// Largest change of grey, of 255; null without an adapter.
+    /// Largest vertical move of a point, metres.
+    pub max_move_m: f64,
+    /// Largest mean change of grey over a block, of 255; null without an adapter.
     pub max_grey: Option<f64>,
+    /// Largest change of grey of one pixel, of 255; null without an adapter.
+    pub worst_pixel_grey: Option<f64>,
+    /// Switches whose grey was looked at; null without an adapter.
+    pub grey_switches: Option<u64>,
     /// Switches looked at.
     pub switches: u64,
     /// Length of the track.
@@ -243,6 +251,8 @@ pub struct Near {
     pub height_changes: u64,
     /// Largest difference from the ground. Must be 0.
     pub max_difference_m: f64,
+    /// Places where the drawn surface was compared with the ground.
+    pub places: u64,
 }
 
 /// The picture against the ground.
@@ -252,6 +262,8 @@ pub struct Gpu {
     pub vertices_checked: u64,
     /// Heights that are not the posts to the bit. Must be 0.
     pub height_mismatches: u64,
+    /// Posts that two blocks place differently on the device. Must be 0.
+    pub position_mismatches: u64,
     /// Pixels whose depth was compared.
     pub pixels_checked: u64,
     /// Pixels whose depth is outside its bounds. Must be 0.
@@ -283,6 +295,8 @@ pub struct WorldReport {
     pub peak_rss_mib: Option<f64>,
     /// What was made of the feature files, by kind.
     pub features: BTreeMap<String, FeatureCount>,
+    /// Lakes set to one level.
+    pub lakes: Vec<Lake>,
 }
 
 /// Where a world lies: its centre on the Earth, its edges in its own plane.
@@ -306,15 +320,17 @@ pub struct Extent {
     pub highest_m: Option<f64>,
 }
 
-/// Posts without data.
+/// Posts without data in the sources: filled inside the data, left void beyond it.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Voids {
     /// Their number.
     pub posts: u64,
-    /// Their share of all posts, 0..=1.
+    /// Their share of the posts inside the data, 0..=1.
     pub share: f64,
     /// Posts of the largest connected one.
     pub largest_posts: u64,
+    /// Posts beyond the data; they stay void and are not counted above.
+    pub beyond_posts: u64,
 }
 
 /// A file that a world was made from.
@@ -328,6 +344,14 @@ pub struct Source {
     pub credit: String,
     /// Distance between its samples, on the ground.
     pub step_m: f64,
+    /// Its coordinate system.
+    pub system: String,
+    /// Factor that its numbers were multiplied by.
+    pub height_scale: f64,
+    /// Its samples without data.
+    pub void_samples: u64,
+    /// What must be known about its accuracy; empty if nothing.
+    pub note: String,
 }
 
 /// Features of one kind.
@@ -339,6 +363,19 @@ pub struct FeatureCount {
     pub kept: u64,
     /// Left out.
     pub skipped: u64,
+}
+
+/// A lake of a world.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Lake {
+    /// As its file calls it.
+    pub name: String,
+    /// Height of the water.
+    pub level_m: f64,
+    /// Where that comes from.
+    pub level_from: String,
+    /// Posts set to it.
+    pub posts: u64,
 }
 
 /// `height`.
@@ -363,8 +400,8 @@ pub struct HeightPoint {
     pub height_m: Option<f64>,
     /// Upward, unit length, world axes; null where there is no data.
     pub normal: Option<[f64; 3]>,
-    /// `ground`, `water` and so on; null where there is no data.
-    pub surface: Option<String>,
+    /// `ground`, or `water` inside a lake's outline; null where there is no data.
+    pub surface: Option<&'static str>,
 }
 
 /// `sight`.
@@ -376,6 +413,12 @@ pub struct Sight {
     pub hit: Option<Hit>,
     /// Least height of the line above the ground; negative where it is cut, null where there is no data under it.
     pub clearance_min_m: Option<f64>,
+    /// Where along the line that is, from its beginning.
+    pub clearance_min_at_m: Option<f64>,
+    /// Length of the line.
+    pub distance_m: f64,
+    /// Share of the line that has ground under it, 0..=1; the rest is void or beyond the world, and hides nothing.
+    pub ground_share: f64,
 }
 
 /// Where a line meets the ground.
@@ -594,25 +637,29 @@ mod tests {
         assert_eq!(
             names(&verify),
             "t_junctions position_mismatches edges_checked.templates edges_checked.pairs edges_checked.window eyes \
-             far.error_max_m far.limits_m far.violations pop.max_px pop.max_grey pop.switches pop.track_km \
-             near.height_changes near.max_difference_m gpu.vertices_checked gpu.height_mismatches gpu.pixels_checked \
-             gpu.pixels_outside gpu.pixels_excluded"
+             far.error_max_m far.errors_max_m far.limits_m far.violations pop.max_px pop.max_move_m pop.max_grey \
+             pop.worst_pixel_grey pop.grey_switches pop.switches pop.track_km near.height_changes \
+             near.max_difference_m near.places gpu.vertices_checked gpu.height_mismatches gpu.position_mismatches \
+             gpu.pixels_checked gpu.pixels_outside gpu.pixels_excluded"
         );
         let features = BTreeMap::from([("highways".to_owned(), FeatureCount::default())]);
-        let world = WorldReport { sources: vec![Source::default()], features, ..WorldReport::default() };
+        let (sources, lakes) = (vec![Source::default()], vec![Lake::default()]);
+        let world = WorldReport { sources, features, lakes, ..WorldReport::default() };
         assert_eq!(
             names(&world),
             "name blocks posts step_m extent.centre_lat_deg extent.centre_lon_deg extent.west_m extent.east_m \
              extent.north_m extent.south_m extent.lowest_m extent.highest_m voids.posts voids.share voids.largest_posts \
-             sources[].name sources[].format sources[].credit sources[].step_m wall_s peak_rss_mib \
-             features.highways.read features.highways.kept features.highways.skipped"
+             voids.beyond_posts sources[].name sources[].format sources[].credit sources[].step_m sources[].system \
+             sources[].height_scale sources[].void_samples sources[].note wall_s peak_rss_mib \
+             features.highways.read features.highways.kept features.highways.skipped lakes[].name lakes[].level_m \
+             lakes[].level_from lakes[].posts"
         );
         let heights = Heights { points: vec![HeightPoint::default()] };
         assert_eq!(
             names(&heights),
             "points[].lat_deg points[].lon_deg points[].x_m points[].z_m points[].height_m points[].normal points[].surface"
         );
-        assert_eq!(names(&Sight::default()), "visible hit clearance_min_m");
+        assert_eq!(names(&Sight::default()), "visible hit clearance_min_m clearance_min_at_m distance_m ground_share");
         let result = BenchResult { yardstick: Some(Yardstick::default()), ..BenchResult::default() };
         assert_eq!(
             names(&Bench { results: vec![result], skipped: vec![Skipped::default()] }),

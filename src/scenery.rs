@@ -5,10 +5,10 @@
 
 use crate::args::ViewArgs;
 use crate::failure::Failure;
-use crate::moment::Moment;
 use crate::open_world;
 use crate::values::{Overlay, Quality};
 use glam::{DQuat, DVec2, DVec3};
+use sim::UtcTime;
 use std::sync::Arc;
 use terrain::block::Rings;
 use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
@@ -163,7 +163,7 @@ impl Scenery {
     ///
     /// # Errors
     /// [`Failure::Failed`] where the position is not known.
-    pub fn to_sun(&self, at: Moment) -> Result<DVec3, Failure> {
+    pub fn to_sun(&self, at: UtcTime) -> Result<DVec3, Failure> {
         to_sun(&self.world, at)
     }
 
@@ -215,9 +215,9 @@ impl Scenery {
 ///
 /// # Errors
 /// [`Failure::Failed`] where the position is not known.
-pub fn to_sun(world: &World, at: Moment) -> Result<DVec3, Failure> {
+pub fn to_sun(world: &World, at: UtcTime) -> Result<DVec3, Failure> {
     let centre = world.projection.centre();
-    let sun = visual::sun::position(at.unix_s, centre.lat_deg(), centre.lon_deg())
+    let sun = visual::sun::position(at.unix_s(), centre.lat_deg(), centre.lon_deg())
         .map_err(|error| Failure::while_doing("placing the sun", error))?;
     // At the centre grid north is true north.
     Ok(terrain::frame::direction(sun.true_azimuth_rad, sun.elevation_rad))
@@ -262,8 +262,8 @@ fn convergence_rad(world: &World, at: DVec3) -> f64 {
 }
 
 /// The moment a picture shows where none was asked for: mid-morning at the world's centre in summer.
-pub fn default_moment(world: &World) -> Moment {
-    // 2026-06-21T00:00Z, then half past nine local solar time.
-    let noon_offset_s = -world.projection.centre().lon_deg() / 360.0 * 86_400.0;
-    Moment { unix_s: 1_782_000_000.0 + 9.0 * 3600.0 + noon_offset_s }
+pub fn default_moment(world: &World) -> UtcTime {
+    // 2026-06-21T09:00Z, moved to nine o'clock local solar time.
+    let nine = UtcTime { unix_ns: 1_782_032_400_000_000_000 };
+    nine.plus_s(-world.projection.centre().lon_deg() / 360.0 * 86_400.0)
 }

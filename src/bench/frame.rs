@@ -1,12 +1,12 @@
 //! Whole frames: the presets beside everything at level 0, in turns over places on the scenic track.
 //!
-//! All sceneries are alive at once, each with a device of its own, and draw the same places one after the other. For
-//! A round is the mean over all places, so that it is the track and not one view that is compared. For
-//! context: the same frame without ground (sky only), and one that is only cleared, which no frame can beat.
+//! All sceneries are alive at once, each with a device of its own, and draw the same places one after the other. A
+//! round is the mean over all places, so that it is the track and not one view that is compared. For context: the same
+//! frame without ground (sky only), and one that is only cleared, which no frame can beat.
 
+use super::OWN;
 use super::cameras::{self, Camera};
 use super::statistics::{Against, Better, ROUNDS, alone, beside};
-use super::OWN;
 use crate::failure::Failure;
 use crate::report::BenchResult;
 use crate::scenery::{self, Look, Scenery};
@@ -113,12 +113,7 @@ impl Bare {
 
     fn sky_ms(&mut self, camera: &Camera, to_sun: glam::DVec3) -> Result<f64, GpuError> {
         let start = Instant::now();
-        let view = visual::camera::View::fov_y(
-            camera.eye_m,
-            camera.attitude,
-            60f64.to_radians(),
-            self.target.size_px,
-        );
+        let view = visual::camera::View::fov_y(camera.eye_m, camera.attitude, 60f64.to_radians(), self.target.size_px);
         let scene = Scene { sun_direction: to_sun, ..Scene::default() };
         let frame = Frame { scene, views: vec![view], hud: Vec::new() };
         self.renderer.render(&self.gpu, &frame, &[&self.target.view], |_, _| ())?;

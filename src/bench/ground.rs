@@ -53,9 +53,8 @@ struct Segment {
 pub fn bench(field: &Arc<Field>, load: Load) -> Result<Vec<BenchResult>, Failure> {
     let area = Ground::new(field.clone()).whole();
     let grid = *field.grid();
-    let engine =
-        sim::ground_contact::height_field(field.heights_m(), grid.columns(), grid.rows(), grid.step_m)
-            .map_err(|error| Failure::while_doing("making the yardstick's height field", error))?;
+    let engine = sim::ground_contact::height_field(field.heights_m(), grid.columns(), grid.rows(), grid.step_m)
+        .map_err(|error| Failure::while_doing("making the yardstick's height field", error))?;
     let mut results = heights(&area, &engine, load)?;
     results.extend(segments(&area, &engine, load)?);
     Ok(results)
@@ -193,8 +192,7 @@ fn segments(area: &Area, engine: &HeightField, load: Load) -> Result<Vec<BenchRe
     let sums = |times: &[Vec<f64>; 3]| -> Vec<f64> {
         (0..times[0].len()).map(|round| times.iter().map(|third| third[round]).sum()).collect()
     };
-    let mut results =
-        vec![result("segments, mix of three equal thirds", total, &sums(&ours), &sums(&theirs), &note)];
+    let mut results = vec![result("segments, mix of three equal thirds", total, &sums(&ours), &sums(&theirs), &note)];
     for (third, [from, to]) in LENGTHS_KM.iter().enumerate() {
         let what = format!("segments of {from}..{to} km");
         results.push(result(&what, thirds[third].len(), &ours[third], &theirs[third], ""));

@@ -11,10 +11,10 @@ use crate::report::BenchResult;
 use glam::DVec3;
 use std::hint::black_box;
 use std::time::Instant;
+use terrain::BlockIndex;
 use terrain::block::mask::{Mask, block_posts};
 use terrain::block::{Rings, light, mesh};
 use terrain::store::World;
-use terrain::BlockIndex;
 
 /// How much is measured.
 #[derive(Debug, Clone, Copy)]

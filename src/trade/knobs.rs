@@ -1,8 +1,8 @@
 //! The five knobs, each with its values from coarsest to finest.
 
+use super::Effort;
 use super::post_step;
 use super::stage::{Actor, Seen, play};
-use super::Effort;
 use crate::bench::cameras::{self, Camera};
 use crate::failure::Failure;
 use crate::report::{Knob, KnobPoint, Trade};
@@ -77,27 +77,33 @@ pub fn measure(
         ..KnobPoint::default()
     };
     tell("pixel limit");
-    let limits = values(&[8.0, 4.0, 2.0, 1.0, 0.5, 0.25], &[8.0, 5.6, 4.0, 2.8, 2.0, 1.4, 1.0, 0.7, 0.5, 0.35, 0.25], &|px| {
-        Look { limit_px: px, ..look }
-    });
+    let limits =
+        values(&[8.0, 4.0, 2.0, 1.0, 0.5, 0.25], &[8.0, 5.6, 4.0, 2.8, 2.0, 1.4, 1.0, 0.7, 0.5, 0.35, 0.25], &|px| {
+            Look { limit_px: px, ..look }
+        });
     knobs.push(setting.knob("pixel limit", "px", SURFACE_PX, limits, &reference, by_surface)?);
 
     tell("near radius");
-    let radii = values(&[6.5, 13.0, 26.0], &[6.5, 9.2, 13.0, 18.4, 26.0], &|km| {
-        Look { near_radius_m: Some(1e3 * km), ..look }
-    });
+    let radii =
+        values(&[6.5, 13.0, 26.0], &[6.5, 9.2, 13.0, 18.4, 26.0], &|km| Look { near_radius_m: Some(1e3 * km), ..look });
     knobs.push(setting.knob("near radius", "km", SURFACE_PX, radii, &reference, by_surface)?);
 
     tell("post step");
     knobs.push(setting.post_step(request)?);
 
     tell("render scale");
-    let scales = values(&[0.5, 0.67, 0.8, 1.0], &[0.5, 0.6, 0.67, 0.75, 0.85, 1.0], &|scale| {
-        Look { render_scale: scale as f32, ..look }
+    let scales = values(&[0.5, 0.67, 0.8, 1.0], &[0.5, 0.6, 0.67, 0.75, 0.85, 1.0], &|scale| Look {
+        render_scale: scale as f32,
+        ..look
     });
-    knobs.push(setting.knob("render scale", "px drawn a px shown, along a side", GREY, scales, &reference, |_, grey| {
-        KnobPoint { error: grey, ..KnobPoint::default() }
-    })?);
+    knobs.push(setting.knob(
+        "render scale",
+        "px drawn a px shown, along a side",
+        GREY,
+        scales,
+        &reference,
+        |_, grey| KnobPoint { error: grey, ..KnobPoint::default() },
+    )?);
 
     let [width, height] = effort.size_px;
     let conditions = format!(
@@ -154,7 +160,8 @@ impl Setting<'_> {
 
     /// The post step: worlds instead of looks.
     fn post_step(&self, request: &BakeRequest) -> Result<Knob, Failure> {
-        let steps: &[f64] = if self.effort.quick { &[400.0, 200.0, 100.0] } else { &[400.0, 300.0, 200.0, 150.0, 100.0] };
+        let steps: &[f64] =
+            if self.effort.quick { &[400.0, 200.0, 100.0] } else { &[400.0, 300.0, 200.0, 150.0, 100.0] };
         let (mut actors, mut points) = (Vec::new(), Vec::new());
         for &step_m in steps {
             let request = post_step::at_step(request, step_m);

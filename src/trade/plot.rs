@@ -61,7 +61,7 @@ impl Axis {
     fn of_errors(values: &[f64]) -> Self {
         let positive = values.iter().copied().filter(|v| v.is_finite() && *v > 0.0);
         let (least, most) = positive.fold((f64::INFINITY, 0.0f64), |(least, most), v| (least.min(v), most.max(v)));
-        if values.iter().any(|v| *v <= 0.0) || !(most > 10.0 * least) || least.is_infinite() {
+        if values.iter().any(|v| *v <= 0.0) || most <= 10.0 * least {
             return Self::linear(values);
         }
         let decades = least.log10().floor() as i32..=most.log10().ceil() as i32;
@@ -101,7 +101,10 @@ fn body(knob: &Knob) -> String {
         text.push('\n');
     };
     put(format!("<text x=\"{LEFT}\" y=\"24\" font-size=\"16\" font-weight=\"bold\">{}</text>", escaped(&knob.name)));
-    put(format!("<text x=\"{LEFT}\" y=\"44\" fill=\"#555\" font-size=\"11\">up: error, {}</text>", escaped(&knob.error_unit)));
+    put(format!(
+        "<text x=\"{LEFT}\" y=\"44\" fill=\"#555\" font-size=\"11\">up: error, {}</text>",
+        escaped(&knob.error_unit)
+    ));
     for &mark in &x_axis.marks {
         let at = x(mark);
         put(format!("<path d=\"M{at:.1} {TOP}V{:.1}\" stroke=\"#e4e4e4\"/>", HEIGHT - BOTTOM));
@@ -114,7 +117,11 @@ fn body(knob: &Knob) -> String {
         let label = shown(mark);
         put(format!("<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>", LEFT - 8.0, at + 4.0));
     }
-    put(format!("<path d=\"M{LEFT} {TOP}V{:.1}H{:.1}\" fill=\"none\" stroke=\"#222\"/>", HEIGHT - BOTTOM, WIDTH - RIGHT));
+    put(format!(
+        "<path d=\"M{LEFT} {TOP}V{:.1}H{:.1}\" fill=\"none\" stroke=\"#222\"/>",
+        HEIGHT - BOTTOM,
+        WIDTH - RIGHT
+    ));
     let middle = (LEFT + WIDTH - RIGHT) / 2.0;
     let cost = escaped(&knob.cost_unit);
     put(format!("<text x=\"{middle:.1}\" y=\"{:.1}\" text-anchor=\"middle\">cost, {cost}</text>", HEIGHT - 16.0));
@@ -130,12 +137,11 @@ fn body(knob: &Knob) -> String {
         });
         let label_y = if crowded && at % 2 == 1 { py + 18.0 } else { py - 9.0 };
         let (label_x, anchor) = if px > WIDTH - RIGHT - 60.0 { (px - 6.0, "end") } else { (px + 6.0, "start") };
-        let label = if at == 0 {
-            format!("{} {}", shown(point.setting), escaped(&knob.unit))
-        } else {
-            shown(point.setting)
-        };
-        put(format!("<text x=\"{label_x:.1}\" y=\"{label_y:.1}\" text-anchor=\"{anchor}\" fill=\"#1f5fa8\">{label}</text>"));
+        let label =
+            if at == 0 { format!("{} {}", shown(point.setting), escaped(&knob.unit)) } else { shown(point.setting) };
+        put(format!(
+            "<text x=\"{label_x:.1}\" y=\"{label_y:.1}\" text-anchor=\"{anchor}\" fill=\"#1f5fa8\">{label}</text>"
+        ));
     }
     text
 }
@@ -159,7 +165,8 @@ mod tests {
     use super::*;
 
     fn knob(points: &[(f64, f64, f64)]) -> Knob {
-        let points = points.iter().map(|&(setting, error, cost)| KnobPoint { setting, error, cost, ..KnobPoint::default() });
+        let points =
+            points.iter().map(|&(setting, error, cost)| KnobPoint { setting, error, cost, ..KnobPoint::default() });
         Knob { name: "a < b & c".into(), unit: "m".into(), points: points.collect(), ..Knob::default() }
     }
 

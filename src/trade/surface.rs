@@ -6,12 +6,12 @@
 //! exact maximum at its nearest point in plan, as the limit of its ring means it.
 
 use glam::{DVec2, DVec3};
+use terrain::POSTS;
 use terrain::block::mask::{SUBS, block_posts};
 use terrain::block::payload::Landscape;
 use terrain::block::rings::REFERENCE_FOCAL_PX;
 use terrain::block::template::{self, FINE};
 use terrain::block::window::Draw;
-use terrain::POSTS;
 
 /// A sum that a root mean square and a largest value come from.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -79,7 +79,8 @@ fn height_m(template: usize, nine: &[f32; 9], at: DVec2) -> f64 {
     for triangle in template::triangles(template) {
         let [a, b, c] = triangle.map(corner);
         let area = (b - a).perp_dot(c - a);
-        let weights = [(c - b).perp_dot(at - b) / area, (a - c).perp_dot(at - c) / area, (b - a).perp_dot(at - a) / area];
+        let weights =
+            [(c - b).perp_dot(at - b) / area, (a - c).perp_dot(at - c) / area, (b - a).perp_dot(at - a) / area];
         // Places are quarters and corners whole: all of this is exact.
         if weights.iter().all(|weight| *weight >= 0.0) {
             let heights = triangle.map(|post| f64::from(nine[usize::from(post)]));

@@ -587,7 +587,7 @@ impl March {
                 63
             }
         };
-        free(self.column, self.along.x).max(free(self.row, self.along.z)).min(31).max(pyramid::BASE)
+        free(self.column, self.along.x).max(free(self.row, self.along.z)).clamp(pyramid::BASE, 31)
     }
 }
 

@@ -49,6 +49,14 @@ impl Offscreen {
     /// # Errors
     /// [`GpuError::Size`].
     pub fn new(gpu: &Gpu, size_px: [u32; 2]) -> Result<Self, GpuError> {
+        Self::with_format(gpu, size_px, FORMAT)
+    }
+
+    /// Makes a target in another format of 4 bytes a texel, such as a window's.
+    ///
+    /// # Errors
+    /// [`GpuError::Size`].
+    pub fn with_format(gpu: &Gpu, size_px: [u32; 2], format: wgpu::TextureFormat) -> Result<Self, GpuError> {
         gpu.check_size(size_px)?;
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("offscreen"),
@@ -56,7 +64,7 @@ impl Offscreen {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
+            format,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
@@ -85,7 +93,10 @@ impl Offscreen {
     /// # Errors
     /// [`GpuError::Lost`], [`GpuError::Refused`].
     pub fn read(&self, gpu: &Gpu) -> Result<Picture, GpuError> {
-        let rgba = read_texels(gpu, &self.texture, wgpu::TextureAspect::All)?;
+        let mut rgba = read_texels(gpu, &self.texture, wgpu::TextureAspect::All)?;
+        if matches!(self.texture.format(), wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb) {
+            rgba.chunks_exact_mut(4).for_each(|texel| texel.swap(0, 2));
+        }
         Ok(Picture { size_px: self.size_px, rgba })
     }
 }
@@ -136,6 +147,26 @@ pub fn read_texels(gpu: &Gpu, texture: &wgpu::Texture, aspect: wgpu::TextureAspe
         texels.extend_from_slice(&row[..row_bytes as usize]);
     }
     Ok(texels)
+}
+
+/// Waits and reads a buffer of 32-bit words.
+///
+/// # Errors
+/// [`GpuError::Lost`], [`GpuError::Refused`].
+pub fn read_words(gpu: &Gpu, words: &wgpu::Buffer) -> Result<Vec<u32>, GpuError> {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size: words.size(),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(words, 0, &buffer, 0, words.size());
+    gpu.queue.submit([encoder.finish()]);
+    buffer.map_async(wgpu::MapMode::Read, .., |_| ());
+    gpu.wait()?;
+    let mapped = buffer.get_mapped_range(..).map_err(|error| GpuError::Refused(error.to_string()))?;
+    Ok(mapped.as_chunks::<4>().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect())
 }
 
 impl Picture {

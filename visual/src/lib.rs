@@ -12,6 +12,7 @@ pub mod frame;
 mod glyphs;
 pub mod gpu;
 pub mod passes;
+pub mod proof;
 pub mod renderer;
 pub mod shaders;
 pub mod sky;

@@ -140,7 +140,8 @@ pub struct FrameBindings {
 impl FrameBindings {
     /// Makes the layout and the sky table's texture.
     pub fn new(device: &wgpu::Device) -> Self {
-        let stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        // Compute only for proofs: it reads the eye.
+        let stages = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: stages, ty, count: None };
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("frame"),

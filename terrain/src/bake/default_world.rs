@@ -17,8 +17,8 @@ const ELEVATION: Bytes = Bytes {
 const LAKES: Bytes =
     Bytes { name: "lakes.geojson", content: include_bytes!("../../../assets/worlds/issyk_kul/lakes.geojson") };
 
-/// To be raised when the bake makes other posts from the same input.
-const BAKE_VERSION: u32 = 2;
+/// To be raised when the bake makes other posts, or another description, from the same input.
+const BAKE_VERSION: u32 = 3;
 
 /// The default world and where it is kept.
 pub struct DefaultWorld {

@@ -9,6 +9,7 @@ use super::mask::{Mask, block_posts};
 use super::mesh::{self, Indices, TILE};
 use super::rings::RingMasks;
 use crate::features::lakes::Lakes;
+use crate::field::Field;
 use crate::grid::BlockIndex;
 use crate::ground::Ground;
 use crate::pyramid::Range;
@@ -70,15 +71,25 @@ pub struct Payload {
 }
 
 impl Mesh {
-    /// Number of triangles.
-    pub fn triangles(&self) -> u32 {
-        let indices = match self {
+    /// The triangle list.
+    pub fn indices(&self) -> &Indices {
+        match self {
             Self::Level0 => mesh::level_0(),
             Self::Level1 => mesh::level_1(),
             Self::Own(list) => list,
-        };
-        indices.len() as u32 / 3
+        }
     }
+
+    /// Number of triangles.
+    pub fn triangles(&self) -> u32 {
+        self.indices().len() as u32 / 3
+    }
+}
+
+/// The heights of a block's posts and apron, `TILE` x `TILE`, row by row; NaN is void or beyond the world.
+pub fn tile_heights_m(field: &Field, block: BlockIndex) -> Box<[f32]> {
+    let (first_column, first_row, tile) = (block.first_column(), block.first_row(), i64::from(TILE));
+    (0..tile * tile).map(|at| field.post_m(first_column + at % tile, first_row + at / tile)).collect()
 }
 
 impl Landscape {
@@ -103,9 +114,7 @@ impl Landscape {
         let field = self.ground.field();
         let grid = field.grid();
         let (first_column, first_row) = (block.first_column(), block.first_row());
-        let tile = i64::from(TILE);
-        let heights_m: Box<[f32]> =
-            (0..tile * tile).map(|at| field.post_m(first_column + at % tile, first_row + at / tile)).collect();
+        let heights_m = tile_heights_m(field, block);
         let posts = block_posts(field, block);
         let range = posts.iter().fold(Range::VOID, |range, h| range.include(*h));
         let side = grid.block_m();

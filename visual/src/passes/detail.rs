@@ -1,14 +1,15 @@
 //! The detail texture: tiling noise that breaks up the ground near the eye.
 //!
-//! RGBA8: red and green a surface slope (0.5 is level), blue and alpha two shades (mean 0.5). Every mip is the mean of
+//! No feature is longer than a twelfth of the texture, or its repetition would show from the air. RGBA8: red and
+//! green a surface slope (0.5 is level), blue and alpha two shades (mean 0.5). Every mip is the mean of
 //! the one below, so with distance the slope fades to level and the shades to grey: no shimmer, no fade to tune.
 
 /// The texture and all its mips, each a square of four-byte texels; `side` a power of two.
 pub fn mip_chain(side: u32) -> Vec<Vec<u8>> {
     let size = side as usize;
-    let relief: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 8, 5, 11)).collect();
-    let shade: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 4, 6, 23)).collect();
-    let grain: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 16, 4, 47)).collect();
+    let relief: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 12, 4, 11)).collect();
+    let shade: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 14, 4, 23)).collect();
+    let grain: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 18, 4, 47)).collect();
     let mut texels: Vec<[f32; 4]> = (0..size * size)
         .map(|at| {
             let (x, y) = (at % size, at / size);
@@ -52,7 +53,13 @@ fn fractal(x: usize, y: usize, size: usize, cells: usize, octaves: u32, seed: u3
         if cells > size {
             break;
         }
-        sum += weight * lattice(x as f32 * cells as f32 / size as f32, y as f32 * cells as f32 / size as f32, cells, seed + octave);
+        sum += weight
+            * lattice(
+                x as f32 * cells as f32 / size as f32,
+                y as f32 * cells as f32 / size as f32,
+                cells,
+                seed + octave,
+            );
         total += weight;
         weight *= 0.6;
     }

@@ -1,6 +1,7 @@
 //! One file a pass, named as its shader. A pass owns its pipeline and buffers and has a plain `draw`.
 
 pub mod detail;
+pub mod heights;
 pub mod lines;
 pub mod sky;
 pub mod terrain;
