@@ -1,11 +1,12 @@
 //! Whole frames: the presets beside everything at level 0, in turns over places on the scenic track.
 //!
-//! All sceneries are alive at once, each with a device of its own, and draw the same places one after the other. For
-//! context: the same frame without ground (sky only), and one that is only cleared, which no frame can beat.
+//! All sceneries are alive at once, each with a device of its own, and draw the same places one after the other. A
+//! round is the mean over all places, so that it is the track and not one view that is compared. For context: the same
+//! frame without ground (sky only), and one that is only cleared, which no frame can beat.
 
 use super::OWN;
 use super::cameras::{self, Camera};
-use super::statistics::{Against, Better, alone, beside};
+use super::statistics::{Against, Better, ROUNDS, alone, beside};
 use crate::failure::Failure;
 use crate::report::BenchResult;
 use crate::scenery::{self, Look, Scenery};
@@ -29,7 +30,7 @@ pub struct Load {
 
 impl Load {
     /// What the program measures with.
-    pub const FULL: Self = Self { size_px: [1280, 720], places: 12, rounds: 4 };
+    pub const FULL: Self = Self { size_px: [1280, 720], places: 8, rounds: ROUNDS };
 }
 
 /// Measures frames over a world.
@@ -53,7 +54,9 @@ pub fn bench(world: &Arc<World>, load: Load) -> Result<Vec<BenchResult>, Failure
     }
     let mut bare = Bare::new(load.size_px).map_err(failed)?;
 
-    let mut times_ms = vec![Vec::new(); sceneries.len() + 2];
+    // A sum over places for each round.
+    let mut times_ms = vec![vec![0.0; load.rounds as usize]; sceneries.len() + 2];
+    let share = 1.0 / cameras.len() as f64;
     let mut triangles = vec![Vec::new(); sceneries.len()];
     for camera in &cameras {
         for ((scenery, target), triangles) in sceneries.iter_mut().zip(&targets).zip(&mut triangles) {
@@ -61,18 +64,18 @@ pub fn bench(world: &Arc<World>, load: Load) -> Result<Vec<BenchResult>, Failure
             triangles.push(scenery.terrain.counts().triangles as f64 * 1e-3);
         }
         bare.sky_ms(camera, to_sun).map_err(failed)?;
-        for _ in 0..load.rounds {
+        for round in 0..load.rounds as usize {
             for ((scenery, target), times_ms) in sceneries.iter_mut().zip(&targets).zip(&mut times_ms) {
-                times_ms.push(camera.frame_ms(scenery, to_sun, target)?);
+                times_ms[round] += share * camera.frame_ms(scenery, to_sun, target)?;
             }
-            times_ms[3].push(bare.sky_ms(camera, to_sun).map_err(failed)?);
-            times_ms[4].push(bare.clear_ms().map_err(failed)?);
+            times_ms[3][round] += share * bare.sky_ms(camera, to_sun).map_err(failed)?;
+            times_ms[4][round] += share * bare.clear_ms().map_err(failed)?;
         }
     }
 
     let adapter = &sceneries[0].gpu.report;
     let [width, height] = load.size_px;
-    let note = format!("{width}x{height}, {} places, {} ({})", cameras.len(), adapter.name, adapter.kind);
+    let note = format!("{width}x{height}, mean over {} places, {} ({})", cameras.len(), adapter.name, adapter.kind);
     let [standard, all, software, sky, clear] = times_ms.as_slice() else { return Ok(Vec::new()) };
     let against = |name, values| Against { name, version: OWN, values };
     let (less, ms) = (Better::Less, "ms");
@@ -123,5 +126,24 @@ impl Bare {
         self.target.clear(&self.gpu);
         self.gpu.wait()?;
         Ok(start.elapsed().as_secs_f64() * 1e3)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_frame_has_a_time_and_a_yardstick() {
+        if let Err(reason) = Gpu::headless() {
+            println!("skipped: {reason}");
+            return;
+        }
+        let world = Arc::new(crate::bench::tests::tiny_world());
+        let results = bench(&world, Load { size_px: [64, 36], places: 2, rounds: 2 }).unwrap();
+        assert_eq!(results.len(), 6);
+        assert!(results.iter().all(|result| result.ours > 0.0 && result.rounds == 2), "{results:?}");
+        let triangles = results.iter().find(|result| result.name == "triangles a frame, standard").unwrap();
+        assert!(triangles.ratio.unwrap() >= 1.0, "levels draw no more than level 0");
     }
 }

@@ -90,3 +90,16 @@ fn each_us<T>(count: usize, mut work: impl FnMut(usize) -> T) -> f64 {
     }
     start.elapsed().as_secs_f64() * 1e6 / count as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_part_of_a_block_is_measured() {
+        let world = crate::bench::tests::tiny_world();
+        let results = bench(&world, Load { blocks: 3, rounds: 2 }).unwrap();
+        assert_eq!(results.len(), 7);
+        assert!(results.iter().all(|result| result.rounds == 2 && result.ours.is_finite()), "{results:?}");
+    }
+}

@@ -23,8 +23,35 @@ pub fn locked_version(package: &str) -> &'static str {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
+    use glam::DVec2;
+    use terrain::bake::{self, BakeRequest, Bytes, Input};
+    use terrain::store::World;
+
+    /// What a world of 24 x 24 km is baked from: an SRTM file made up here, ridges to some 3,000 m.
+    pub fn tiny_request() -> BakeRequest {
+        const SIDE: usize = 1201;
+        let ridge = |at: DVec2| 1_500.0 * (1.0 + (at.x * 0.05).sin() * (at.y * 0.07).cos());
+        let content: Vec<u8> = (0..SIDE * SIDE)
+            .flat_map(|at| (ridge(DVec2::new((at % SIDE) as f64, (at / SIDE) as f64)) as i16).to_be_bytes())
+            .collect();
+        // Embedded input is static; a test's few megabytes may stay.
+        let bytes = Bytes { name: "N42E078.hgt", content: content.leak() };
+        BakeRequest {
+            name: "tiny".into(),
+            sources: vec![(Input::Embedded(bytes), 1.0)],
+            features: Vec::new(),
+            step_m: 200.0,
+            centre: None,
+            size_km: Some([24.0, 24.0]),
+        }
+    }
+
+    /// The world of that.
+    pub fn tiny_world() -> World {
+        bake::bake(&tiny_request(), &mut |_, _| ()).unwrap()
+    }
 
     #[test]
     fn the_lock_file_tells_versions() {

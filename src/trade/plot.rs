@@ -61,7 +61,7 @@ impl Axis {
     fn of_errors(values: &[f64]) -> Self {
         let positive = values.iter().copied().filter(|v| v.is_finite() && *v > 0.0);
         let (least, most) = positive.fold((f64::INFINITY, 0.0f64), |(least, most), v| (least.min(v), most.max(v)));
-        if values.iter().any(|v| *v <= 0.0) || !(most > 10.0 * least) || least.is_infinite() {
+        if values.iter().any(|v| *v <= 0.0) || most <= 10.0 * least {
             return Self::linear(values);
         }
         let decades = least.log10().floor() as i32..=most.log10().ceil() as i32;

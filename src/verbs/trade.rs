@@ -5,8 +5,9 @@ use crate::args::TradeArgs;
 use crate::failure::Failure;
 use crate::open_world;
 use crate::output::{self, Output};
-use crate::report::Trade;
+use crate::report::{Knob, KnobPoint, Trade};
 use crate::trade::{self, Effort};
+use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -29,7 +30,28 @@ pub fn run(args: &TradeArgs, output: Output) -> Result<(), Failure> {
     if let Some(folder) = &args.out {
         write(folder, &trade)?;
     }
-    output.print(&trade)
+    match output {
+        Output::Json => output.print(&trade),
+        Output::Table => output.print(&table(&trade)),
+    }
+}
+
+/// The report with a line a value, for a person.
+fn table(trade: &Trade) -> Value {
+    let unit = |knob: &Knob| json!({"knob": knob.name, "setting": knob.unit, "error": knob.error_unit, "cost": knob.cost_unit});
+    let line = |knob: &Knob, point: &KnobPoint| {
+        json!({
+            "knob": knob.name, "setting": point.setting, "error": point.error, "error_max": point.error_max,
+            "image_rms_grey": point.image_rms_grey, "cost": point.cost, "triangles": point.triangles,
+            "bytes": point.bytes, "bake_s": point.bake_s,
+        })
+    };
+    let lines = trade.knobs.iter().flat_map(|knob| knob.points.iter().map(move |point| line(knob, point)));
+    json!({
+        "conditions": trade.conditions,
+        "points": lines.collect::<Vec<_>>(),
+        "units": trade.knobs.iter().map(unit).collect::<Vec<_>>(),
+    })
 }
 
 fn write(folder: &Path, trade: &Trade) -> Result<(), Failure> {
@@ -43,4 +65,26 @@ fn write(folder: &Path, trade: &Trade) -> Result<(), Failure> {
         put(format!("{}.svg", knob.name.replace(' ', "_")), trade::plot(knob))?;
     }
     put("all.svg".into(), trade::sheet(&trade.knobs))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_files_are_written_and_the_table_has_a_line_a_value() {
+        let points = vec![KnobPoint { setting: 12.0, error: 3.0, cost: 2.0, ..KnobPoint::default() }; 2];
+        let knob = Knob { name: "post step".into(), points, ..Knob::default() };
+        let trade = Trade { knobs: vec![knob.clone(), knob], conditions: "none".into() };
+        assert_eq!(table(&trade)["points"].as_array().map(Vec::len), Some(4));
+        let folder = std::env::temp_dir().join(format!("poligon-trade-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        write(&folder, &trade).unwrap();
+        let mut names: Vec<_> =
+            fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        assert_eq!(names, ["all.svg", "post_step.svg", "trade.csv", "trade.json"]);
+        fs::remove_dir_all(&folder).unwrap();
+        assert!(write(Path::new("/dev/null/none"), &trade).is_err());
+    }
 }
