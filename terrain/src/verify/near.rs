@@ -15,6 +15,9 @@ use std::collections::HashMap;
 /// step is a whole number of metres, and the difference from the ground is 0 and not a rounding.
 const PARTS: f64 = 32.0;
 
+/// A block's heights, as bits, and its triangles.
+type Seen = (Box<[u32]>, Box<[u16]>);
+
 /// Watches a flight; see the module.
 pub struct Near {
     /// Heights, triangles or blocks that were not as they were when first seen.
@@ -25,7 +28,7 @@ pub struct Near {
     pub places: u64,
     /// Blocks looked at, over all looks.
     pub blocks: u64,
-    first: HashMap<BlockIndex, (Box<[u32]>, Box<[u16]>)>,
+    first: HashMap<BlockIndex, Seen>,
     area: Area,
 }
 
