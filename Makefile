@@ -28,6 +28,7 @@ fly: release ## build it and fly: in a window where there is a display, else hea
 
 test: setup-test lint ## formatting, lints, all tests
 	$(CARGO) test --workspace --locked --no-fail-fast
+	$(CARGO) test --package poligon-terrain --lib --locked --no-fail-fast --features cells32
 
 lint: setup
 	@.ci/component fmt rustfmt && $(CARGO) fmt --all --check || test $$? -eq 3

@@ -88,10 +88,11 @@ fn map_at(local: vec2<f32>, slot: vec2<f32>) -> vec4<f32> {
 
 // Radiance of ground of an albedo under sun and sky; `light` is a texel of the light map, `tilt` bends its normal.
 fn lit(albedo: vec3<f32>, light: vec4<f32>, tilt: vec2<f32>) -> vec3<f32> {
-    let plan = light.rg * 2.0 - 1.0 + tilt;
-    let normal = normalize(vec3<f32>(plan.x, sqrt(max(1.0 - dot(plan, plan), 0.01)), plan.y));
-    let sun = max(dot(normal, frame.sun_direction), 0.0) * light.b;
-    let sky = light.a * (0.5 + 0.5 * normal.y);
+    let plan = light.rg * 2.0 - 1.0;
+    let up = sqrt(max(1.0 - dot(plan, plan), 0.01));
+    // The tilt is small: the bent normal is not made unit length again.
+    let sun = max(dot(vec3<f32>(plan + tilt, up).xzy, frame.sun_direction), 0.0) * light.b;
+    let sky = light.a * (0.5 + 0.5 * up);
     // What the sky does not reach is lit by other ground a little.
     let bounced = 0.12 * (1.0 - sky) * max(frame.sun_direction.y, 0.0);
     return albedo * (1.0 / 3.14159265) * (frame.sun_irradiance * (sun + bounced) + frame.sky_irradiance * sky);
@@ -105,11 +106,12 @@ fn terrain_fragment(surface: Surface) -> @location(0) vec4<f32> {
     var tilt = vec2<f32>(0.0);
     if DETAIL > 0u {
         // Whole repeats a block, so that borders match.
-        let near = textureSample(detail_texture, detail_sampler, surface.local * (7.0 / f32(TILE - 2u)));
+        let near = textureSample(detail_texture, detail_sampler, surface.local * (11.0 / f32(TILE - 2u)));
         tilt = (near.rg - 0.5) * 0.30;
-        albedo = albedo * (0.55 + 0.9 * near.b);
+        // Bright ground, such as snow, is the more even one.
+        albedo = albedo * (1.0 + (near.b - 0.5) * (0.8 - 0.7 * map.g));
         if DETAIL > 1u {
-            let nearer = textureSample(detail_texture, detail_sampler, surface.local.yx * (53.0 / f32(TILE - 2u)));
+            let nearer = textureSample(detail_texture, detail_sampler, surface.local.yx * (97.0 / f32(TILE - 2u)));
             tilt += (nearer.gr - 0.5) * 0.24;
             albedo = albedo * (0.6 + 0.8 * nearer.a);
         }
@@ -136,11 +138,17 @@ fn water_fragment(surface: WaterSurface) -> @location(0) vec4<f32> {
     // Schlick, water's 2 % face on; waves keep it from becoming a perfect mirror at the horizon.
     let out = 1.0 - facing;
     let fresnel = 0.02 + 0.62 * (out * out) * (out * out) * out;
+    // Sun glitter: the share of waves that have the slope which mirrors the sun to the eye, at a wind of 3 m/s.
+    // Source: C. Cox, W. Munk. Measurement of the roughness of the sea surface from photographs of the sun's glitter.
+    // 1954: mean square slope 0.003 + 0.00512 * wind.
     let half_way = normalize(to_eye + frame.sun_direction);
-    let spread = max(dot(normal, half_way), 0.0);
-    // Slopes of a light breeze: a narrow lobe, drawn out towards the sun by the grazing view itself.
-    let glint = pow(spread, 380.0) * 9.0 * step(0.0, frame.sun_direction.y) * light.b;
-    let water = ground * (1.0 - fresnel) + surface.mirrored * fresnel + frame.sun_irradiance * (glint * (0.04 + fresnel));
+    let slope = half_way.xz / max(half_way.y, 0.05) - tilt;
+    let waves = exp(dot(slope, slope) * (-1.0 / 0.0184)) * (1.0 / (3.14159265 * 0.0184));
+    let steep = half_way.y * half_way.y;
+    let toward = 1.0 - max(dot(half_way, to_eye), 0.0);
+    let mirror = 0.02 + 0.98 * (toward * toward) * (toward * toward) * toward;
+    let glitter = mirror * waves / (4.0 * max(to_eye.y, 0.12) * max(steep * steep, 0.05)) * light.b * step(0.0, frame.sun_direction.y);
+    let water = ground * (1.0 - fresnel) + surface.mirrored * fresnel + frame.sun_irradiance * min(glitter, 3.0);
     let colour = overlaid(mix(ground, water, wet), surface.slot.z);
     return shown(colour, surface.haze, surface.clip.xy);
 }

@@ -3,9 +3,9 @@
 //! How a value is read and what it may be stands in [`crate::values`]. A flag that is not given is `None` where the
 //! quality preset or the world decides. Misuse is told by clap and ends with exit status 2.
 
-use crate::moment::{self, Moment};
 use crate::values::{self, Extent, Look, MapPoint, Overlay, Place, Quality, Size, Subject};
 use clap::{Args, Parser, Subcommand};
+use sim::UtcTime;
 use std::path::PathBuf;
 
 /// Fly over real ground, and prove what you fly over.
@@ -56,8 +56,8 @@ pub struct ViewArgs {
     #[arg(long, value_name = "F", value_parser = values::fov_y_deg, default_value = "60", allow_hyphen_values = true)]
     pub fov_y_deg: f64,
     /// Date and time, such as 2026-06-21T09:30:00Z or 2026-06-21T15:30+06:00 [default: the world's].
-    #[arg(long, value_name = "ISO", value_parser = moment::parse)]
-    pub time: Option<Moment>,
+    #[arg(long, value_name = "ISO", value_parser = UtcTime::parse)]
+    pub time: Option<UtcTime>,
     /// How far one sees, metres; no farther than the window reaches.
     #[arg(long, value_name = "V", value_parser = values::visibility_m, allow_hyphen_values = true)]
     pub visibility_m: Option<f64>,
@@ -128,11 +128,13 @@ pub struct FlyArgs {
 /// `poligon bake`
 #[derive(Debug, Args)]
 pub struct BakeArgs {
-    /// Elevation files: GeoTIFF, .hgt, .hgt.zip, .dem, .dem.gz, 16-bit PNG with a world file.
+    /// Elevation files: GeoTIFF, .hgt, .hgt.zip, .dem, .dem.gz, 16-bit PNG with a world file. Where they overlap the
+    /// finest counts. `FILE@0.1` multiplies the file's heights, here decimetres, to make them metres.
     #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
     pub dem: Vec<PathBuf>,
-    /// Roads, water, buildings. Not listed: this version reads none, and says so.
-    #[arg(long, value_name = "FILE", num_args = 1.., hide = true)]
+    /// GeoJSON files of lakes: polygons, with their `name` and `level_m` if known. A lake's ground is set to its level,
+    /// or to the middle height inside the outline.
+    #[arg(long, value_name = "FILE", num_args = 1..)]
     pub features: Vec<PathBuf>,
     /// Photographs. Not listed: this version reads none, and says so.
     #[arg(long, value_name = "FILE", num_args = 1.., hide = true)]
@@ -143,11 +145,11 @@ pub struct BakeArgs {
     /// The world's centre, degrees [default: the middle of the data].
     #[arg(long, value_name = "LAT,LON", value_parser = values::map_point, allow_hyphen_values = true)]
     pub centre: Option<MapPoint>,
-    /// The world's size, kilometres, rounded outward to whole blocks [default: that of the data].
+    /// The world's size, kilometres, rounded outward to whole blocks [default: that of the data, at most 400x400].
     #[arg(long, value_name = "WxH", value_parser = values::extent)]
     pub size_km: Option<Extent>,
-    /// The folder to make.
-    #[arg(long, value_name = "W")]
+    /// The folder to make, NAME.world; a world that is there is replaced, anything else is left alone.
+    #[arg(long, value_name = "NAME.world")]
     pub out: PathBuf,
 }
 
@@ -173,18 +175,23 @@ pub struct HeightArgs {
     /// The world [default: the embedded one].
     #[arg(value_name = "W")]
     pub world: Option<PathBuf>,
-    /// The points: a CSV file whose first line is `lat_deg,lon_deg` or `x_m,z_m`.
+    /// The points: a CSV file whose first line is `lat_deg,lon_deg` (degrees) or `x_m,z_m` (metres east and south of the
+    /// world's centre).
     #[arg(long, value_name = "FILE.csv")]
     pub points: PathBuf,
 }
 
 /// `poligon sight`
 #[derive(Debug, Args)]
+#[command(
+    after_help = "The world is flat here, as in the picture: the Earth's curvature and refraction are left out. \
+                        Ground that is\nnot in the world hides nothing. Exit status 0 whether they see each other or not."
+)]
 pub struct SightArgs {
     /// The world [default: the embedded one].
     #[arg(value_name = "W")]
     pub world: Option<PathBuf>,
-    /// One end.
+    /// One end: degrees, and metres above mean sea level or, with `:agl`, above the ground.
     #[arg(long, value_name = "LAT,LON,ALT[:agl]", value_parser = values::place, allow_hyphen_values = true)]
     pub from: Place,
     /// The other end.

@@ -107,12 +107,17 @@ fn near(gpu: &Gpu, subject: &Subject, found: &mut Found, told: &dyn Fn(f64)) -> 
             break;
         }
         told(0.4 * found.depths.pixels_checked as f64 / PIXELS as f64);
-        let at = DVec2::new(rng.random_range(grid.west_m..grid.east_m()), rng.random_range(grid.north_m..grid.south_m()));
+        let at =
+            DVec2::new(rng.random_range(grid.west_m..grid.east_m()), rng.random_range(grid.north_m..grid.south_m()));
         let Some(ground_m) = area.height_m(at.x, at.y) else { continue };
         // 2 m to 6 km, evenly by ratio.
         let above_m = 2.0 * 3_000f64.powf(rng.random_range(0.0..1.0));
         let elevation_rad = if eye % EYES == 0 { -std::f64::consts::FRAC_PI_2 } else { rng.random_range(-1.3..0.1) };
-        let attitude = terrain::frame::attitude(rng.random_range(0.0..6.28), elevation_rad, rng.random_range(-0.5..0.5));
+        let attitude = terrain::frame::attitude(
+            rng.random_range(0.0..std::f64::consts::TAU),
+            elevation_rad,
+            rng.random_range(-0.5..0.5),
+        );
         let view = View::fov_y(DVec3::new(at.x, ground_m + above_m, at.y), attitude, 60f64.to_radians(), size_px);
         stage.follow(&view);
         stage.draw(&view)?;

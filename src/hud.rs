@@ -77,12 +77,14 @@ pub struct HudInput<'a> {
     pub load_factor: f64,
     /// 0..1.
     pub throttle: f64,
-    /// Time of the last frame, milliseconds.
+    /// Time of the last frame, milliseconds; not shown if it is not a time.
     pub frame_ms: f64,
     /// Date and time of day, as it shall read.
     pub date: &'a str,
     /// States in capitals: `PAUSED`, `SLEW`, `SLOWED`.
     pub status: &'a [&'a str],
+    /// What the pilot can do next, one line.
+    pub hint: &'a str,
     /// Width and height, pixels.
     pub viewport_px: (u32, u32),
     /// Vertical field of view, radians.
@@ -92,7 +94,7 @@ pub struct HudInput<'a> {
 }
 
 const GREEN: [f32; 4] = [0.10, 1.0, 0.25, 0.95];
-const DIM: [f32; 4] = [0.10, 1.0, 0.25, 0.6];
+const DIM: [f32; 4] = [0.10, 1.0, 0.25, 0.75];
 const AMBER: [f32; 4] = [1.0, 0.55, 0.05, 1.0];
 /// Letter heights at 720 rows, pixels.
 const LARGE: f64 = 18.0;
@@ -372,8 +374,13 @@ fn numbers(sheet: &mut Sheet, input: &HudInput) {
 
     let date: String = input.date.chars().take(40).collect();
     sheet.text([-620.0, 340.0], SMALL, &date, Anchor::Left, DIM);
-    let rate = if input.frame_ms > 0.0 { shown((1_000.0 / input.frame_ms).round(), 0) } else { "---".to_owned() };
-    sheet.text([620.0, 340.0], SMALL, &format!("{} MS {rate} FPS", shown(input.frame_ms, 1)), Anchor::Right, DIM);
+    // Where frames are not timed there is nothing to say.
+    if input.frame_ms > 0.0 {
+        let (ms, rate) = (shown(tenth(input.frame_ms), 1), shown((1_000.0 / input.frame_ms).round(), 0));
+        sheet.text([620.0, 340.0], SMALL, &format!("{ms} MS {rate} FPS"), Anchor::Right, DIM);
+    }
+    let hint: String = input.hint.chars().take(92).collect();
+    sheet.text([0.0, 340.0], SMALL, &hint, Anchor::Centre, GREEN);
 
     let status = input.status.iter().take(8).copied().collect::<Vec<_>>().join("  ");
     let status: String = status.chars().take(80).collect();
@@ -414,6 +421,7 @@ mod tests {
             frame_ms: 16.7,
             date: "2026-06-21 06:30 UTC",
             status: &["PAUSED", "SLEW"],
+            hint: "ESC QUIT",
             viewport_px: (1280, 720),
             fov_y_rad: 60f64.to_radians(),
             looking_ahead: true,
@@ -464,7 +472,7 @@ mod tests {
                 for roll in -6..=6 {
                     let input = HudInput {
                         pitch_rad: f64::from(pitch) * 0.1745,
-                        roll_rad: f64::from(roll) * 0.5236,
+                        roll_rad: f64::from(roll) * std::f64::consts::FRAC_PI_6,
                         true_heading_rad: f64::from(pitch * 7 + roll),
                         viewport_px,
                         ..level()
@@ -493,6 +501,7 @@ mod tests {
                 fov_y_rad: v,
                 date: "юный \u{0} date that is much longer than anything one would ever want to read here",
                 status: &["A STATUS LONGER THAN ANY SCREEN IS WIDE, AND THEN SOME MORE OF IT, AND MORE STILL"],
+                hint: "A HINT LONGER THAN ANY SCREEN IS WIDE, AND THEN SOME MORE OF IT, AND MORE STILL, AND ON AND ON",
                 ..level()
             };
             assert!(assert_inside(&input) > 10);

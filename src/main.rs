@@ -3,19 +3,22 @@
 //! stdout carries the verb's report only (see [`output`]); all else goes to stderr. Exit status: 0 done, 1 failed,
 //! 2 misuse.
 #![forbid(unsafe_code)]
-#![allow(dead_code, reason = "to be removed when the verbs are filled: reports and values wait for them")]
 
 mod args;
+mod bench;
 mod failure;
+mod flight;
 mod gpu_proof;
 mod hud;
-mod moment;
 mod open_world;
 mod output;
 mod points;
 mod progress;
 mod report;
 mod scenery;
+mod stage;
+mod thread_time;
+mod trade;
 mod values;
 mod verbs;
 
@@ -24,8 +27,10 @@ use clap::Parser;
 use failure::Failure;
 use output::Output;
 use std::process::ExitCode;
+use std::time::Instant;
 
 fn main() -> ExitCode {
+    let started = Instant::now();
     let line = match CommandLine::try_parse() {
         Ok(line) => line,
         Err(told) => {
@@ -34,7 +39,7 @@ fn main() -> ExitCode {
             return ExitCode::from(if told.use_stderr() { 2 } else { 0 });
         }
     };
-    match run(&line) {
+    match run(&line, started) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             output::tell(format_args!("poligon: {failure}"));
@@ -43,10 +48,10 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(line: &CommandLine) -> Result<(), Failure> {
+fn run(line: &CommandLine, started: Instant) -> Result<(), Failure> {
     let output = if line.json { Output::Json } else { Output::Table };
     match &line.verb {
-        Verb::Fly(args) => verbs::fly::run(args, output),
+        Verb::Fly(args) => verbs::fly::run(args, output, started),
         Verb::Bake(args) => verbs::bake::run(args, output),
         Verb::Info(args) => verbs::info::run(args, output),
         Verb::Verify(args) => verbs::verify::run(args, output),

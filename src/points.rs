@@ -1,7 +1,7 @@
 //! The points that `height` is asked about: a CSV file with one of two headers.
 //!
 //! `lat_deg,lon_deg` (geodetic, degrees) or `x_m,z_m` (world, metres). Lines end with LF or CRLF; blank ones are
-//! skipped; a byte order mark is taken. A value that is not a finite number is an error that names its line.
+//! skipped; a byte order mark is taken. A value that is not a finite number is an error that names its line and column.
 
 use std::fmt;
 
@@ -32,6 +32,8 @@ pub enum PointsError {
     Value {
         /// The line.
         line: usize,
+        /// The column's name.
+        column: &'static str,
         /// What was expected.
         expected: &'static str,
         /// What was found.
@@ -47,7 +49,9 @@ impl fmt::Display for PointsError {
                 write!(f, "expected the header `lat_deg,lon_deg` or `x_m,z_m` on line 1, found `{found}`")
             }
             Self::Count { line, found } => write!(f, "expected 2 values on line {line}, found {found}"),
-            Self::Value { line, expected, found } => write!(f, "expected {expected} on line {line}, found `{found}`"),
+            Self::Value { line, column, expected, found } => {
+                write!(f, "expected {expected} on line {line}, column `{column}`, found `{found}`")
+            }
         }
     }
 }
@@ -67,10 +71,11 @@ pub fn parse(bytes: &[u8]) -> Result<Points, PointsError> {
         ["x_m", "z_m"] => false,
         _ => return Err(PointsError::Header(shown(header))),
     };
-    let (names, ranges) = if geodetic {
-        (["a latitude within -90..=90", "a longitude within -180..=180"], [90.0, 180.0])
+    let (columns, names, ranges) = if geodetic {
+        let names = ["a latitude within -90..=90", "a longitude within -180..=180"];
+        (["lat_deg", "lon_deg"], names, [90.0, 180.0])
     } else {
-        (["an x in metres", "a z in metres"], [f64::MAX, f64::MAX])
+        (["x_m", "z_m"], ["a finite number of metres"; 2], [f64::MAX, f64::MAX])
     };
     let mut points = Vec::new();
     for (index, text) in lines.filter(|(_, text)| !text.trim().is_empty()) {
@@ -80,7 +85,7 @@ pub fn parse(bytes: &[u8]) -> Result<Points, PointsError> {
         };
         let value = |text: &str, which: usize| match text.trim().parse::<f64>() {
             Ok(value) if value.abs() <= ranges[which] => Ok(value),
-            _ => Err(PointsError::Value { line, expected: names[which], found: shown(text) }),
+            _ => Err(PointsError::Value { line, column: columns[which], expected: names[which], found: shown(text) }),
         };
         points.push([value(first, 0)?, value(second, 1)?]);
     }
@@ -108,11 +113,20 @@ mod tests {
     #[test]
     fn the_wrong_line_is_named() {
         let said = |text: &str| parse(text.as_bytes()).unwrap_err().to_string();
-        assert_eq!(said("x_m,z_m\n1,2\n1,nan\n"), "expected a z in metres on line 3, found `nan`");
-        assert_eq!(said("lat_deg,lon_deg\n91,0\n"), "expected a latitude within -90..=90 on line 2, found `91`");
+        assert_eq!(
+            said("x_m,z_m\n1,2\n1,nan\n"),
+            "expected a finite number of metres on line 3, column `z_m`, found `nan`"
+        );
+        assert_eq!(
+            said("lat_deg,lon_deg\n91,0\n"),
+            "expected a latitude within -90..=90 on line 2, column `lat_deg`, found `91`"
+        );
         assert_eq!(said("x_m,z_m\n1,2,3\n"), "expected 2 values on line 2, found 3");
         assert_eq!(said("x_m,z_m\n1\n"), "expected 2 values on line 2, found 1");
-        assert_eq!(said("x_m,z_m\n1e999,0\n"), "expected an x in metres on line 2, found `1e999`");
+        assert_eq!(
+            said("x_m,z_m\n1e999,0\n"),
+            "expected a finite number of metres on line 2, column `x_m`, found `1e999`"
+        );
         for header in ["", "lon_deg,lat_deg\n1,2", "1,2\n3,4", "x,z\n"] {
             assert!(matches!(parse(header.as_bytes()), Err(PointsError::Header(_))), "{header}");
         }

@@ -24,6 +24,11 @@ impl Progress {
 
     /// Shows the share done, 0..=1. Cheap enough to call for every row.
     pub fn show(&self, share: f64) {
+        self.show_stage("", share);
+    }
+
+    /// Shows which stage the job is in and the share done of that, 0..=1.
+    pub fn show_stage(&self, stage: &str, share: f64) {
         let Some(drawn) = &self.drawn else { return };
         // A bar that another thread is drawing need not be drawn again.
         let Ok(mut last) = drawn.try_lock() else { return };
@@ -31,7 +36,9 @@ impl Progress {
             return;
         }
         *last = Some(Instant::now());
-        let _ = write!(io::stderr(), "\r{}", line(&self.label, share));
+        let label = if stage.is_empty() { self.label.clone() } else { format!("{}: {stage}", self.label) };
+        // A shorter line than the last leaves nothing of it behind.
+        let _ = write!(io::stderr(), "\r{}\x1b[K", line(&label, share));
     }
 }
 

@@ -297,6 +297,8 @@ pub struct WorldReport {
     pub peak_rss_mib: Option<f64>,
     /// What was made of the feature files, by kind.
     pub features: BTreeMap<String, FeatureCount>,
+    /// Lakes set to one level.
+    pub lakes: Vec<Lake>,
 }
 
 /// Where a world lies: its centre on the Earth, its edges in its own plane.
@@ -320,15 +322,17 @@ pub struct Extent {
     pub highest_m: Option<f64>,
 }
 
-/// Posts without data.
+/// Posts without data in the sources: filled inside the data, left void beyond it.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Voids {
     /// Their number.
     pub posts: u64,
-    /// Their share of all posts, 0..=1.
+    /// Their share of the posts inside the data, 0..=1.
     pub share: f64,
     /// Posts of the largest connected one.
     pub largest_posts: u64,
+    /// Posts beyond the data; they stay void and are not counted above.
+    pub beyond_posts: u64,
 }
 
 /// A file that a world was made from.
@@ -342,6 +346,14 @@ pub struct Source {
     pub credit: String,
     /// Distance between its samples, on the ground.
     pub step_m: f64,
+    /// Its coordinate system.
+    pub system: String,
+    /// Factor that its numbers were multiplied by.
+    pub height_scale: f64,
+    /// Its samples without data.
+    pub void_samples: u64,
+    /// What must be known about its accuracy; empty if nothing.
+    pub note: String,
 }
 
 /// Features of one kind.
@@ -353,6 +365,19 @@ pub struct FeatureCount {
     pub kept: u64,
     /// Left out.
     pub skipped: u64,
+}
+
+/// A lake of a world.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Lake {
+    /// As its file calls it.
+    pub name: String,
+    /// Height of the water.
+    pub level_m: f64,
+    /// Where that comes from.
+    pub level_from: String,
+    /// Posts set to it.
+    pub posts: u64,
 }
 
 /// `height`.
@@ -377,8 +402,8 @@ pub struct HeightPoint {
     pub height_m: Option<f64>,
     /// Upward, unit length, world axes; null where there is no data.
     pub normal: Option<[f64; 3]>,
-    /// `ground`, `water` and so on; null where there is no data.
-    pub surface: Option<String>,
+    /// `ground`, or `water` inside a lake's outline; null where there is no data.
+    pub surface: Option<&'static str>,
 }
 
 /// `sight`.
@@ -390,6 +415,12 @@ pub struct Sight {
     pub hit: Option<Hit>,
     /// Least height of the line above the ground; negative where it is cut, null where there is no data under it.
     pub clearance_min_m: Option<f64>,
+    /// Where along the line that is, from its beginning.
+    pub clearance_min_at_m: Option<f64>,
+    /// Length of the line.
+    pub distance_m: f64,
+    /// Share of the line that has ground under it, 0..=1; the rest is void or beyond the world, and hides nothing.
+    pub ground_share: f64,
 }
 
 /// Where a line meets the ground.
@@ -454,6 +485,10 @@ pub struct BenchResult {
     pub ratio_ci: Option<[f64; 2]>,
     /// Rounds, each with both.
     pub rounds: u32,
+    /// First and third quartile of `ours` over the rounds.
+    pub quartiles: Option<[f64; 2]>,
+    /// What one must know to read the figure.
+    pub note: Option<String>,
 }
 
 /// What is compared with.
@@ -481,6 +516,8 @@ pub struct Skipped {
 pub struct Trade {
     /// Every setting that trades accuracy for cost.
     pub knobs: Vec<Knob>,
+    /// How it was measured.
+    pub conditions: String,
 }
 
 /// One setting, measured.
@@ -511,6 +548,12 @@ pub struct KnobPoint {
     pub triangles: Option<u64>,
     /// Bytes held, where the knob changes them.
     pub bytes: Option<u64>,
+    /// The largest error, in the unit of `error`.
+    pub error_max: Option<f64>,
+    /// Root mean square difference of the picture from the reference's, grey of 255.
+    pub image_rms_grey: Option<f64>,
+    /// Time to make the world anew, where the knob needs it.
+    pub bake_s: Option<f64>,
 }
 
 impl FrameMs {
@@ -602,31 +645,35 @@ mod tests {
              gpu.pixels_checked gpu.pixels_outside gpu.pixels_excluded"
         );
         let features = BTreeMap::from([("highways".to_owned(), FeatureCount::default())]);
-        let world = WorldReport { sources: vec![Source::default()], features, ..WorldReport::default() };
+        let (sources, lakes) = (vec![Source::default()], vec![Lake::default()]);
+        let world = WorldReport { sources, features, lakes, ..WorldReport::default() };
         assert_eq!(
             names(&world),
             "name blocks posts step_m extent.centre_lat_deg extent.centre_lon_deg extent.west_m extent.east_m \
              extent.north_m extent.south_m extent.lowest_m extent.highest_m voids.posts voids.share voids.largest_posts \
-             sources[].name sources[].format sources[].credit sources[].step_m wall_s peak_rss_mib \
-             features.highways.read features.highways.kept features.highways.skipped"
+             voids.beyond_posts sources[].name sources[].format sources[].credit sources[].step_m sources[].system \
+             sources[].height_scale sources[].void_samples sources[].note wall_s peak_rss_mib \
+             features.highways.read features.highways.kept features.highways.skipped lakes[].name lakes[].level_m \
+             lakes[].level_from lakes[].posts"
         );
         let heights = Heights { points: vec![HeightPoint::default()] };
         assert_eq!(
             names(&heights),
             "points[].lat_deg points[].lon_deg points[].x_m points[].z_m points[].height_m points[].normal points[].surface"
         );
-        assert_eq!(names(&Sight::default()), "visible hit clearance_min_m");
+        assert_eq!(names(&Sight::default()), "visible hit clearance_min_m clearance_min_at_m distance_m ground_share");
         let result = BenchResult { yardstick: Some(Yardstick::default()), ..BenchResult::default() };
         assert_eq!(
             names(&Bench { results: vec![result], skipped: vec![Skipped::default()] }),
             "results[].name results[].unit results[].ours results[].yardstick.name results[].yardstick.version \
-             results[].yardstick.value results[].ratio results[].ratio_ci results[].rounds skipped[].name skipped[].reason"
+             results[].yardstick.value results[].ratio results[].ratio_ci results[].rounds results[].quartiles results[].note skipped[].name skipped[].reason"
         );
         let knob = Knob { points: vec![KnobPoint::default()], ..Knob::default() };
         assert_eq!(
-            names(&Trade { knobs: vec![knob] }),
+            names(&Trade { knobs: vec![knob], ..Trade::default() }),
             "knobs[].name knobs[].unit knobs[].error_unit knobs[].cost_unit knobs[].points[].setting \
-             knobs[].points[].error knobs[].points[].cost knobs[].points[].triangles knobs[].points[].bytes"
+             knobs[].points[].error knobs[].points[].cost knobs[].points[].triangles knobs[].points[].bytes \
+             knobs[].points[].error_max knobs[].points[].image_rms_grey knobs[].points[].bake_s conditions"
         );
     }
 

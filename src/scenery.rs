@@ -5,10 +5,10 @@
 
 use crate::args::ViewArgs;
 use crate::failure::Failure;
-use crate::moment::Moment;
 use crate::open_world;
 use crate::values::{Overlay, Quality};
 use glam::{DQuat, DVec2, DVec3};
+use sim::UtcTime;
 use std::sync::Arc;
 use terrain::block::Rings;
 use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
@@ -52,27 +52,43 @@ pub struct Look {
 impl Look {
     /// From flags; what is not given comes from the preset, and that from the adapter.
     pub fn of(args: &ViewArgs, adapter: AdapterKind, wait: bool) -> Self {
-        let quality = args.quality.unwrap_or(match adapter {
+        let preset = Self::preset(args.quality.unwrap_or(match adapter {
             AdapterKind::Hardware => Quality::Fine,
             AdapterKind::Software => Quality::Standard,
-        });
+        }));
+        Self {
+            size_px: [args.size.width_px, args.size.height_px],
+            fov_y_rad: args.fov_y_deg.to_radians(),
+            visibility_m: args.visibility_m,
+            window: args.window.unwrap_or(preset.window),
+            all_level_0: args.all_level_0,
+            msaa: args.msaa.unwrap_or(preset.msaa),
+            render_scale: args.render_scale.map_or(preset.render_scale, |scale| scale as f32),
+            ground: TerrainLook { overlay: args.overlay == Some(Overlay::Blocks), ..preset.ground },
+            wait,
+            ..preset
+        }
+    }
+
+    /// A preset alone: 1280 x 720 pixels, 60 degrees, waiting for every block.
+    pub fn preset(quality: Quality) -> Self {
         let (window, msaa, render_scale, detail) = match quality {
             Quality::Fine => (24, 4, 1.0, 2),
             Quality::Standard => (24, 1, 1.0, 1),
             Quality::Software => (12, 1, 0.67, 0),
         };
         Self {
-            size_px: [args.size.width_px, args.size.height_px],
-            fov_y_rad: args.fov_y_deg.to_radians(),
-            visibility_m: args.visibility_m,
-            window: args.window.unwrap_or(window),
+            size_px: [1280, 720],
+            fov_y_rad: 60f64.to_radians(),
+            visibility_m: None,
+            window,
             limit_px: 1.0,
             near_radius_m: None,
-            all_level_0: args.all_level_0,
-            msaa: args.msaa.unwrap_or(msaa),
-            render_scale: args.render_scale.map_or(render_scale, |scale| scale as f32),
-            ground: TerrainLook { detail, overlay: args.overlay == Some(Overlay::Blocks), wireframe: false },
-            wait,
+            all_level_0: false,
+            msaa,
+            render_scale,
+            ground: TerrainLook { detail, overlay: false, wireframe: false },
+            wait: true,
             keep_depth: false,
         }
     }
@@ -147,7 +163,7 @@ impl Scenery {
     ///
     /// # Errors
     /// [`Failure::Failed`] where the position is not known.
-    pub fn to_sun(&self, at: Moment) -> Result<DVec3, Failure> {
+    pub fn to_sun(&self, at: UtcTime) -> Result<DVec3, Failure> {
         to_sun(&self.world, at)
     }
 
@@ -199,9 +215,9 @@ impl Scenery {
 ///
 /// # Errors
 /// [`Failure::Failed`] where the position is not known.
-pub fn to_sun(world: &World, at: Moment) -> Result<DVec3, Failure> {
+pub fn to_sun(world: &World, at: UtcTime) -> Result<DVec3, Failure> {
     let centre = world.projection.centre();
-    let sun = visual::sun::position(at.unix_s, centre.lat_deg(), centre.lon_deg())
+    let sun = visual::sun::position(at.unix_s(), centre.lat_deg(), centre.lon_deg())
         .map_err(|error| Failure::while_doing("placing the sun", error))?;
     // At the centre grid north is true north.
     Ok(terrain::frame::direction(sun.true_azimuth_rad, sun.elevation_rad))
@@ -246,8 +262,8 @@ fn convergence_rad(world: &World, at: DVec3) -> f64 {
 }
 
 /// The moment a picture shows where none was asked for: mid-morning at the world's centre in summer.
-pub fn default_moment(world: &World) -> Moment {
-    // 2026-06-21T00:00Z, then half past nine local solar time.
-    let noon_offset_s = -world.projection.centre().lon_deg() / 360.0 * 86_400.0;
-    Moment { unix_s: 1_782_000_000.0 + 9.0 * 3600.0 + noon_offset_s }
+pub fn default_moment(world: &World) -> UtcTime {
+    // 2026-06-21T09:00Z, moved to nine o'clock local solar time.
+    let nine = UtcTime { unix_ns: 1_782_032_400_000_000_000 };
+    nine.plus_s(-world.projection.centre().lon_deg() / 360.0 * 86_400.0)
 }

@@ -46,7 +46,9 @@ fn nothing_near_moves_and_all_of_it_is_the_ground() {
     let (landscape, rings) = mountains();
     let mut near = Near::new(landscape.ground.whole());
     let mut flight = Flight::new(landscape, rings, 12);
-    for (at, eye) in pop::line(DVec2::new(-21_000.0, -15_000.0), DVec2::new(14_000.0, 19_000.0), 60.0).iter().enumerate() {
+    for (at, eye) in
+        pop::line(DVec2::new(-21_000.0, -15_000.0), DVec2::new(14_000.0, 19_000.0), 60.0).iter().enumerate()
+    {
         flight.fly_to(*eye, 300.0);
         near.look(&flight, *eye, if at % 20 == 0 { 8 } else { 0 });
     }

@@ -10,10 +10,10 @@ const MOLECULE_SCALE_HEIGHT_M: f32 = 8000.0;
 fn sky_radiance(direction: vec3<f32>) -> vec3<f32> {
     let azimuth_cos = dot(direction.xz, frame.sun_level) * inverseSqrt(max(dot(direction.xz, direction.xz), 1e-12));
     let u = sqrt(max(0.5 - 0.5 * azimuth_cos, 0.0));
-    // sqrt(sine of the elevation), flattened over the lowest half degree: the sky's steep first rows would else
+    // sqrt(sine of the elevation), flattened over the lowest degree: the sky's steep first rows would else
     // meet the even colour below the horizon in a visible edge.
     let rise = max(direction.y, 0.0);
-    let v = rise * inverseSqrt(rise + 0.008);
+    let v = rise * inverseSqrt(rise + 0.02);
     let texel = vec2<f32>(
         (u * (TABLE_WIDTH - 1.0) + 0.5) / TABLE_WIDTH,
         (v * (TABLE_HEIGHT - 1.0) + 0.5) / TABLE_HEIGHT,

@@ -1,14 +1,51 @@
 //! `poligon bench`: speed beside a yardstick in the same run.
 
 use crate::args::BenchArgs;
+use crate::bench::{bake, frame, ground, mesh};
 use crate::failure::Failure;
-use crate::output::Output;
+use crate::open_world;
+use crate::output::{self, Output};
+use crate::report;
+use crate::values::Subject;
+use std::sync::Arc;
+
+/// Rounds of baking: each takes half a minute of three bakes.
+const BAKES: u32 = 7;
 
 /// Runs the verb.
 ///
 /// # Errors
 /// [`Failure`] says what was expected and what was found.
 pub fn run(args: &BenchArgs, output: Output) -> Result<(), Failure> {
-    let _ = (args.subject, output);
-    super::not_built_yet("bench")
+    let wanted = |subject| args.subject == subject || args.subject == Subject::All;
+    let world = Arc::new(open_world::open(None)?);
+    let mut report = report::Bench::default();
+    if wanted(Subject::Ground) {
+        tell_subject("ground queries");
+        report.results.extend(ground::bench(&world.field, ground::Load::FULL)?);
+    }
+    if wanted(Subject::Mesh) {
+        tell_subject("building blocks");
+        report.results.extend(mesh::bench(&world, mesh::Load::FULL)?);
+    }
+    if wanted(Subject::Frame) {
+        tell_subject("frames");
+        match visual::Gpu::headless() {
+            Ok(_) => report.results.extend(frame::bench(&world, frame::Load::FULL)?),
+            Err(reason) => {
+                report.skipped.push(report::Skipped { name: "frame".into(), reason: reason.to_string() });
+            }
+        }
+    }
+    if wanted(Subject::Bake) {
+        tell_subject("baking");
+        let baked = bake::bench(BAKES)?;
+        report.results.extend(baked.results);
+        report.skipped.extend(baked.skipped);
+    }
+    output.print(&report)
+}
+
+fn tell_subject(subject: &str) {
+    output::tell(format_args!("poligon: measuring {subject}"));
 }

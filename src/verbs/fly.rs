@@ -2,8 +2,12 @@
 
 use crate::args::FlyArgs;
 use crate::failure::Failure;
+use crate::flight;
+use crate::open_world;
 use crate::output::{self, Output};
 use std::ffi::OsStr;
+use std::sync::Arc;
+use std::time::Instant;
 
 /// How the flight is shown and timed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +46,7 @@ fn has_display() -> bool {
 ///
 /// # Errors
 /// [`Failure`] says what was expected and what was found.
-pub fn run(args: &FlyArgs, to: Output) -> Result<(), Failure> {
+pub fn run(args: &FlyArgs, to: Output, started: Instant) -> Result<(), Failure> {
     if let Some(scenario) = &args.scenario {
         return Err(Failure::Misuse(format!(
             "this version reads no scenarios, found --scenario {}",
@@ -53,9 +57,16 @@ pub fn run(args: &FlyArgs, to: Output) -> Result<(), Failure> {
     if mode != Mode::Window {
         output::tell(format_args!("no window: pictures go to {}", args.shots.display()));
     }
-    let _ = (&args.world, args.seconds_s, args.frames, args.eye, args.heading_deg, args.speed_mps);
-    let _ = (&args.view, &args.report, to);
-    super::not_built_yet("fly")
+    let world = Arc::new(open_world::open(args.world.as_deref())?);
+    let report = match mode {
+        Mode::Window => flight::window::fly(args, world, started)?,
+        Mode::Lockstep => flight::headless::fly(args, world, started)?,
+        Mode::Paced { hz } => flight::paced::fly(args, hz, world, started)?,
+    };
+    if let Some(path) = &args.report {
+        flight::write_report(path, &report)?;
+    }
+    to.print(&report)
 }
 
 #[cfg(test)]

@@ -11,10 +11,3 @@ pub mod shot;
 pub mod sight;
 pub mod trade;
 pub mod verify;
-
-use crate::failure::Failure;
-
-/// What a verb answers while its part of the program does not exist.
-fn not_built_yet<T>(verb: &str) -> Result<T, Failure> {
-    Err(Failure::Failed(format!("`{verb}` is not built yet in this version")))
-}

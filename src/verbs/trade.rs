@@ -1,14 +1,90 @@
-//! `poligon trade`: accuracy against cost of every setting.
+//! `poligon trade`: accuracy against cost of every setting, as a report and, with `--out`, as files: `trade.csv`,
+//! `trade.json`, a plot a knob and `all.svg`.
 
 use crate::args::TradeArgs;
 use crate::failure::Failure;
-use crate::output::Output;
+use crate::open_world;
+use crate::output::{self, Output};
+use crate::report::{Knob, KnobPoint, Trade};
+use crate::trade::{self, Effort};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
 
 /// Runs the verb.
 ///
 /// # Errors
 /// [`Failure`] says what was expected and what was found.
 pub fn run(args: &TradeArgs, output: Output) -> Result<(), Failure> {
-    let _ = (args.quick, &args.out, output);
-    super::not_built_yet("trade")
+    if let Some(folder) = &args.out {
+        // Before minutes of work, not after.
+        fs::create_dir_all(folder).map_err(|error| Failure::while_doing(folder.display(), error))?;
+    }
+    let world = Arc::new(open_world::open(None)?);
+    let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
+    let request = terrain::bake::default_request();
+    let trade = trade::measure(&world, &request, &effort, &mut |what| {
+        output::tell(format_args!("poligon: measuring {what}"));
+    })?;
+    if let Some(folder) = &args.out {
+        write(folder, &trade)?;
+    }
+    match output {
+        Output::Json => output.print(&trade),
+        Output::Table => output.print(&table(&trade)),
+    }
+}
+
+/// The report with a line a value, for a person.
+fn table(trade: &Trade) -> Value {
+    let unit = |knob: &Knob| json!({"knob": knob.name, "setting": knob.unit, "error": knob.error_unit, "cost": knob.cost_unit});
+    let line = |knob: &Knob, point: &KnobPoint| {
+        json!({
+            "knob": knob.name, "setting": point.setting, "error": point.error, "error_max": point.error_max,
+            "image_rms_grey": point.image_rms_grey, "cost": point.cost, "triangles": point.triangles,
+            "bytes": point.bytes, "bake_s": point.bake_s,
+        })
+    };
+    let lines = trade.knobs.iter().flat_map(|knob| knob.points.iter().map(move |point| line(knob, point)));
+    json!({
+        "conditions": trade.conditions,
+        "points": lines.collect::<Vec<_>>(),
+        "units": trade.knobs.iter().map(unit).collect::<Vec<_>>(),
+    })
+}
+
+fn write(folder: &Path, trade: &Trade) -> Result<(), Failure> {
+    let put = |name: String, text: String| {
+        let path = folder.join(name);
+        fs::write(&path, text).map_err(|error| Failure::while_doing(path.display(), error))
+    };
+    put("trade.csv".into(), trade::csv(trade))?;
+    put("trade.json".into(), format!("{}\n", output::to_value(trade)?))?;
+    for knob in &trade.knobs {
+        put(format!("{}.svg", knob.name.replace(' ', "_")), trade::plot(knob))?;
+    }
+    put("all.svg".into(), trade::sheet(&trade.knobs))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_files_are_written_and_the_table_has_a_line_a_value() {
+        let points = vec![KnobPoint { setting: 12.0, error: 3.0, cost: 2.0, ..KnobPoint::default() }; 2];
+        let knob = Knob { name: "post step".into(), points, ..Knob::default() };
+        let trade = Trade { knobs: vec![knob.clone(), knob], conditions: "none".into() };
+        assert_eq!(table(&trade)["points"].as_array().map(Vec::len), Some(4));
+        let folder = std::env::temp_dir().join(format!("poligon-trade-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        write(&folder, &trade).unwrap();
+        let mut names: Vec<_> =
+            fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        assert_eq!(names, ["all.svg", "post_step.svg", "trade.csv", "trade.json"]);
+        fs::remove_dir_all(&folder).unwrap();
+        assert!(write(Path::new("/dev/null/none"), &trade).is_err());
+    }
 }

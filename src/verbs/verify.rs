@@ -16,10 +16,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use terrain::block::{Landscape, Rings};
 use terrain::store::World;
 use terrain::verify::cracks::{self, Cracks, Sheet};
+use terrain::verify::far;
 use terrain::verify::flight::Flight;
 use terrain::verify::near::Near;
 use terrain::verify::pop::{self, Pop};
-use terrain::verify::far;
 use visual::Scene;
 use visual::passes::terrain::eye_uniforms;
 
@@ -91,7 +91,10 @@ fn broken(report: &report::Verify) -> Vec<String> {
     let far = &report.far;
     promise(
         far.violations == 0,
-        format!("expected every far block within its ring's limit, found {} beyond, worst {} m", far.violations, far.error_max_m),
+        format!(
+            "expected every far block within its ring's limit, found {} beyond, worst {} m",
+            far.violations, far.error_max_m
+        ),
     );
     let pop = &report.pop;
     promise(pop.max_px <= POP_PX, format!("expected a switch to move at most {POP_PX} px, found {}", pop.max_px));
@@ -122,7 +125,11 @@ fn broken(report: &report::Verify) -> Vec<String> {
         let all = (gpu.pixels_checked + gpu.pixels_excluded) as f64;
         promise(
             gpu.pixels_excluded as f64 <= EXCLUDED * all,
-            format!("expected at most {} % of pixels on silhouettes, found {} of {all}", 100.0 * EXCLUDED, gpu.pixels_excluded),
+            format!(
+                "expected at most {} % of pixels on silhouettes, found {} of {all}",
+                100.0 * EXCLUDED,
+                gpu.pixels_excluded
+            ),
         );
     }
     broken
@@ -138,7 +145,9 @@ fn random_windows(landscape: &Landscape, rings: &Rings, report: &mut report::Ver
         rng.random_range(low_m - off_m..high_m + off_m)
     };
     let eyes: Vec<DVec3> = (0..EYES)
-        .map(|_| DVec3::new(along(grid.west_m, grid.east_m()), along(-500.0, 12_000.0), along(grid.north_m, grid.south_m())))
+        .map(|_| {
+            DVec3::new(along(grid.west_m, grid.east_m()), along(-500.0, 12_000.0), along(grid.north_m, grid.south_m()))
+        })
         .collect();
     let bar = Progress::new("cracks");
     let done = AtomicU64::new(0);

@@ -12,6 +12,7 @@ use crate::grid::Grid;
 use crate::pyramid::{self, Pyramid};
 use glam::{DVec2, DVec3};
 use std::fmt;
+use std::hint::select_unpredictable;
 use std::sync::Arc;
 
 /// The ground of a world; cheap to clone.
@@ -26,6 +27,7 @@ pub struct Ground {
 pub struct Area {
     field: Arc<Field>,
     pyramid: Arc<Pyramid>,
+    cells: Cells,
 }
 
 /// Why an area cannot be had.
@@ -85,7 +87,7 @@ impl Ground {
 
     /// All of the ground.
     pub fn whole(&self) -> Area {
-        Area { field: self.field.clone(), pyramid: self.pyramid.clone() }
+        Area { field: self.field.clone(), pyramid: self.pyramid.clone(), cells: Cells::of(self.field.grid()) }
     }
 
     /// The posts.
@@ -108,20 +110,58 @@ struct InCell {
     south: f64,
 }
 
+/// What a height needs of the grid, ready as floats. They are not made from the whole numbers at each query: the
+/// processor's conversion waits for what its target register last held, which is the post before, so that no two
+/// queries would overlap.
+#[derive(Debug, Clone, Copy)]
+struct Cells {
+    west_m: f64,
+    north_m: f64,
+    step_m: f64,
+    /// Number of cells from west to east and from north to south.
+    across: f64,
+    down: f64,
+    last_column: u32,
+    last_row: u32,
+}
+
+impl Cells {
+    fn of(grid: &Grid) -> Self {
+        let (across, down) = (grid.columns() - 1, grid.rows() - 1);
+        Self {
+            west_m: grid.west_m,
+            north_m: grid.north_m,
+            step_m: grid.step_m,
+            across: f64::from(across),
+            down: f64::from(down),
+            last_column: across - 1,
+            last_row: down - 1,
+        }
+    }
+}
+
 impl InCell {
     /// `None` outside the grid, or if a number is NaN.
     #[inline(always)]
-    fn of(grid: &Grid, x_m: f64, z_m: f64) -> Option<Self> {
-        let (cells_x, cells_z) = (f64::from(grid.columns() - 1), f64::from(grid.rows() - 1));
+    fn of(cells: &Cells, x_m: f64, z_m: f64) -> Option<Self> {
         // A division, not a product with the inverse: at a post it is exact.
-        let (u, v) = ((x_m - grid.west_m) / grid.step_m, (z_m - grid.north_m) / grid.step_m);
-        if !(u >= 0.0 && u <= cells_x && v >= 0.0 && v <= cells_z) {
+        let (u, v) = ((x_m - cells.west_m) / cells.step_m, (z_m - cells.north_m) / cells.step_m);
+        if !(u >= 0.0 && u <= cells.across && v >= 0.0 && v <= cells.down) {
             return None;
         }
         // The last post belongs to the last cell.
-        let (column, row) = ((u as usize).min(cells_x as usize - 1), (v as usize).min(cells_z as usize - 1));
-        Some(Self { column, row, east: u - column as f64, south: v - row as f64 })
+        let (column, row) = ((u as u32).min(cells.last_column), (v as u32).min(cells.last_row));
+        let (east, south) = (u - float(column), v - float(row));
+        Some(Self { column: column as usize, row: row as usize, east, south })
     }
+}
+
+/// The number as a float, by its bits over those of 2^52: as exact as the processor's conversion, and waits for nothing
+/// (see [`Cells`]).
+#[inline(always)]
+fn float(whole: u32) -> f64 {
+    const TWO_TO_52: f64 = 4_503_599_627_370_496.0;
+    f64::from_bits(TWO_TO_52.to_bits() | u64::from(whole)) - TWO_TO_52
 }
 
 /// Heights of a cell's posts: north-west, north-east, south-west, south-east.
@@ -130,11 +170,11 @@ type Cell = [f64; 4];
 /// Height over a point of the cell. NaN if the point's triangle has a void corner.
 #[inline(always)]
 fn height_in_cell([nw, ne, sw, se]: Cell, east: f64, south: f64) -> f64 {
-    if east + south <= 1.0 {
-        nw + east * (ne - nw) + south * (sw - nw)
-    } else {
-        se + (1.0 - east) * (sw - se) + (1.0 - south) * (ne - se)
-    }
+    let north_west = nw + east * (ne - nw) + south * (sw - nw);
+    let south_east = se + (1.0 - east) * (sw - se) + (1.0 - south) * (ne - se);
+    // Which half is a coin toss: a branch would be guessed wrong every other time, and every guess stops the next
+    // answers from fetching their posts meanwhile.
+    select_unpredictable(east + south <= 1.0, north_west, south_east)
 }
 
 /// Upward unit normal of the cell's triangle: the north-western or the south-eastern.
@@ -167,7 +207,7 @@ impl Area {
     /// Exact at posts; between them it lies on the triangle under the point, to f64 rounding.
     #[inline]
     pub fn height_m(&self, x_m: f64, z_m: f64) -> Option<f64> {
-        let at = InCell::of(self.field.grid(), x_m, z_m)?;
+        let at = InCell::of(&self.cells, x_m, z_m)?;
         let height = height_in_cell(self.cell(at.column, at.row), at.east, at.south);
         if height.is_nan() { self.beside_void(x_m, z_m).map(|(h, _)| h) } else { Some(height) }
     }
@@ -177,12 +217,11 @@ impl Area {
     /// Works in groups whose posts are asked for together, so that a core waits for memory once a group, not once a point.
     pub fn heights_m(&self, points: &[DVec2], heights_m: &mut [f64]) {
         const GROUP: usize = 16;
-        let grid = self.field.grid();
         let outside = InCell { column: 0, row: 0, east: f64::NAN, south: f64::NAN };
         for (points, heights) in points.chunks(GROUP).zip(heights_m.chunks_mut(GROUP)) {
             let mut places = [outside; GROUP];
             for (place, p) in places.iter_mut().zip(points) {
-                *place = InCell::of(grid, p.x, p.y).unwrap_or(outside);
+                *place = InCell::of(&self.cells, p.x, p.y).unwrap_or(outside);
             }
             let mut cells = [[0.0; 4]; GROUP];
             for (cell, place) in cells.iter_mut().zip(&places).take(points.len()) {
@@ -199,7 +238,7 @@ impl Area {
 
     /// Ground height and upward unit normal over a plan point; `None` over void and beyond the world.
     pub fn height_and_normal(&self, x_m: f64, z_m: f64) -> Option<(f64, DVec3)> {
-        let at = InCell::of(self.field.grid(), x_m, z_m)?;
+        let at = InCell::of(&self.cells, x_m, z_m)?;
         let cell = self.cell(at.column, at.row);
         let height = height_in_cell(cell, at.east, at.south);
         if height.is_nan() {
@@ -211,7 +250,7 @@ impl Area {
     /// For a point on the rim of a void: the triangle with data that has it on an edge or corner, if there is one.
     fn beside_void(&self, x_m: f64, z_m: f64) -> Option<(f64, DVec3)> {
         let grid = self.field.grid();
-        let at = InCell::of(grid, x_m, z_m)?;
+        let at = InCell::of(&self.cells, x_m, z_m)?;
         for row in [at.row as i64, at.row as i64 - 1, at.row as i64 + 1] {
             for column in [at.column as i64, at.column as i64 - 1, at.column as i64 + 1] {
                 let inside = (0..i64::from(grid.columns() - 1)).contains(&column)
@@ -548,7 +587,7 @@ impl March {
                 63
             }
         };
-        free(self.column, self.along.x).max(free(self.row, self.along.z)).min(31).max(pyramid::BASE)
+        free(self.column, self.along.x).max(free(self.row, self.along.z)).clamp(pyramid::BASE, 31)
     }
 }
 

@@ -9,6 +9,7 @@
 
 pub mod bake;
 pub mod block;
+mod clearance;
 pub mod features;
 mod field;
 pub mod frame;
@@ -21,8 +22,9 @@ pub mod synthetic;
 pub mod verify;
 
 pub use block::rings::{RingMasks, Rings};
+pub use clearance::Clearance;
 pub use field::{Corner, Field, FieldError, Triangle};
 pub use grid::{BlockIndex, CELLS, Grid, GridError, POSTS, PostRect};
 pub use ground::{Area, AreaError, Ground, SurfaceHit};
-pub use pyramid::{Pyramid, Range};
 pub use projection::{Ellipsoid, Geodetic, MAX_CENTRE_LAT_DEG, Projection, ProjectionError, TransverseMercator, WGS84};
+pub use pyramid::{Pyramid, Range};

@@ -49,6 +49,14 @@ impl Offscreen {
     /// # Errors
     /// [`GpuError::Size`].
     pub fn new(gpu: &Gpu, size_px: [u32; 2]) -> Result<Self, GpuError> {
+        Self::with_format(gpu, size_px, FORMAT)
+    }
+
+    /// Makes a target in another format of 4 bytes a texel, such as a window's.
+    ///
+    /// # Errors
+    /// [`GpuError::Size`].
+    pub fn with_format(gpu: &Gpu, size_px: [u32; 2], format: wgpu::TextureFormat) -> Result<Self, GpuError> {
         gpu.check_size(size_px)?;
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("offscreen"),
@@ -56,7 +64,7 @@ impl Offscreen {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
+            format,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
@@ -64,12 +72,31 @@ impl Offscreen {
         Ok(Self { texture, view, size_px })
     }
 
+    /// Clears the target to black and submits: the least that a frame can be.
+    pub fn clear(&self, gpu: &Gpu) {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("clear") });
+        drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("clear"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &self.view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            ..wgpu::RenderPassDescriptor::default()
+        }));
+        gpu.queue.submit([encoder.finish()]);
+    }
+
     /// Waits for the drawing and reads the picture.
     ///
     /// # Errors
     /// [`GpuError::Lost`], [`GpuError::Refused`].
     pub fn read(&self, gpu: &Gpu) -> Result<Picture, GpuError> {
-        let rgba = read_texels(gpu, &self.texture, wgpu::TextureAspect::All)?;
+        let mut rgba = read_texels(gpu, &self.texture, wgpu::TextureAspect::All)?;
+        if matches!(self.texture.format(), wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb) {
+            rgba.chunks_exact_mut(4).for_each(|texel| texel.swap(0, 2));
+        }
         Ok(Picture { size_px: self.size_px, rgba })
     }
 }

@@ -11,7 +11,8 @@ use crate::features::lakes::Lakes;
 use crate::field::Field;
 use crate::grid::Grid;
 use crate::projection::{Geodetic, Projection};
-use crate::store::{Extent, FORMAT_VERSION, LakeInfo, Source, Statistics, Voids, World, WorldInfo};
+use crate::store::{Extent, FORMAT_VERSION, FeatureCount, LakeInfo, Source, Statistics, Voids, World, WorldInfo};
+use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -142,7 +143,7 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
     };
     progress("filling voids", 1.0);
     progress("lakes", 0.0);
-    let (lakes, lake_infos) = set_lakes(request, &projection, &grid, &mut sampled.heights_m)?;
+    let (lakes, lake_infos, lakes_read) = set_lakes(request, &projection, &grid, &mut sampled.heights_m)?;
     progress("lakes", 1.0);
 
     let info = WorldInfo {
@@ -159,6 +160,10 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
         statistics: statistics(&sampled.heights_m),
         voids,
         sources: described(request, &projection, &rasters),
+        features: BTreeMap::from([(
+            "lakes".to_owned(),
+            FeatureCount { read: lakes_read, kept: lake_infos.len(), skipped: lakes_read - lake_infos.len() },
+        )]),
         lakes: lake_infos,
         files: Vec::new(),
     };
@@ -173,7 +178,7 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
 
 fn scaled(input: &Input, height_scale: f64) -> Result<Raster, BakeError> {
     if !(height_scale.is_finite() && height_scale != 0.0) {
-        return Err(BakeError::HeightScale(height_scale));
+        return Err(BakeError::HeightScale { file: input.shown(), scale: height_scale });
     }
     let mut raster = input.raster().map_err(|problem| BakeError::Source { file: input.shown(), problem })?;
     if height_scale != 1.0 {
@@ -190,13 +195,15 @@ fn set_lakes(
     projection: &Projection,
     grid: &Grid,
     heights_m: &mut [f32],
-) -> Result<(Lakes, Vec<LakeInfo>), BakeError> {
+) -> Result<(Lakes, Vec<LakeInfo>, usize), BakeError> {
     let mut all = Vec::new();
     let mut level_from = Vec::new();
+    let mut read = 0;
     for input in &request.features {
         let failed = |problem| BakeError::Features { file: input.shown(), problem };
-        let outlines = lake_bake::read_geojson(&input.text().map_err(failed)?, projection, grid).map_err(failed)?;
-        for outline in outlines {
+        let found = lake_bake::read_geojson(&input.text().map_err(failed)?, projection, grid).map_err(failed)?;
+        read += found.features;
+        for outline in found.outlines {
             let from = if outline.level_m.is_some() { "file" } else { "median of the raster inside" };
             if let Some(lake) = lake_bake::with_level(outline, grid, heights_m) {
                 all.push(lake);
@@ -213,8 +220,8 @@ fn set_lakes(
         posts,
         taper_m: TAPER_POSTS * grid.step_m,
     });
-    let infos = infos.collect();
-    Ok((lakes, infos))
+    let infos: Vec<LakeInfo> = infos.collect();
+    Ok((lakes, infos, read))
 }
 
 fn statistics(heights_m: &[f32]) -> Statistics {

@@ -17,8 +17,8 @@ const ELEVATION: Bytes = Bytes {
 const LAKES: Bytes =
     Bytes { name: "lakes.geojson", content: include_bytes!("../../../assets/worlds/issyk_kul/lakes.geojson") };
 
-/// To be raised when the bake makes other posts from the same input.
-const BAKE_VERSION: u32 = 2;
+/// To be raised when the bake makes other posts, or another description, from the same input.
+const BAKE_VERSION: u32 = 3;
 
 /// The default world and where it is kept.
 pub struct DefaultWorld {
@@ -36,7 +36,7 @@ pub struct DefaultWorld {
 pub fn default_world(progress: &mut dyn FnMut(&str, f32)) -> Result<DefaultWorld, BakeError> {
     match cache_folder() {
         Ok(folder) => default_world_in(&folder, progress),
-        Err(reason) => Ok(DefaultWorld { world: bake(&request(), progress)?, kept: Err(reason) }),
+        Err(reason) => Ok(DefaultWorld { world: bake(&default_request(), progress)?, kept: Err(reason) }),
     }
 }
 
@@ -46,7 +46,7 @@ fn default_world_in(folder: &Path, progress: &mut dyn FnMut(&str, f32)) -> Resul
     if let Ok(world) = World::read(&path) {
         return Ok(DefaultWorld { world, kept: Ok(path) });
     }
-    let world = bake(&request(), progress)?;
+    let world = bake(&default_request(), progress)?;
     let refused = |error: &dyn std::fmt::Display| format!("the default world cannot be kept for next time: {error}");
     let kept = match std::fs::create_dir_all(folder) {
         Err(error) => Err(refused(&format!("{}: {error}", folder.display()))),
@@ -60,7 +60,8 @@ fn default_world_in(folder: &Path, progress: &mut dyn FnMut(&str, f32)) -> Resul
     Ok(DefaultWorld { world, kept })
 }
 
-fn request() -> BakeRequest {
+/// What the default world is baked from: everything is embedded.
+pub fn default_request() -> BakeRequest {
     BakeRequest {
         name: "Issyk-Kul".into(),
         sources: vec![(Input::Embedded(ELEVATION), 1.0)],
@@ -105,7 +106,7 @@ mod tests {
         let started = std::time::Instant::now();
         let world = World::read(&a).unwrap();
         println!("read in {:.1} ms", started.elapsed().as_secs_f64() * 1e3);
-        assert_eq!(world.projection, bake(&request(), &mut |_, _| ()).unwrap().projection);
+        assert_eq!(world.projection, bake(&default_request(), &mut |_, _| ()).unwrap().projection);
         // The lake is flat, and its posts are the level to the bit.
         assert_eq!(world.info.lakes[0].level_m, 1607.0);
         let level = world.field.heights_m().iter().filter(|h| **h == 1607.0).count();

@@ -26,7 +26,12 @@ pub enum BakeError {
         problem: LakesError,
     },
     /// The height scale of a source is not a factor.
-    HeightScale(f64),
+    HeightScale {
+        /// The source's name.
+        file: String,
+        /// What was given.
+        scale: f64,
+    },
     /// The step is out of range.
     Step(f64),
     /// The size is out of range.
@@ -50,7 +55,9 @@ impl fmt::Display for BakeError {
             Self::NoSource => write!(f, "expected at least one file of heights, got none"),
             Self::Source { file, problem } => write!(f, "{file}: {problem}"),
             Self::Features { file, problem } => write!(f, "{file}: {problem}"),
-            Self::HeightScale(scale) => write!(f, "a height scale must be finite and not 0, got {scale}"),
+            Self::HeightScale { file, scale } => {
+                write!(f, "{file}: expected a height scale that is finite and not 0 after the `@`, found {scale}")
+            }
             Self::Step(step_m) => write!(f, "the step must be within {MIN_STEP_M}..={MAX_STEP_M} m, got {step_m}"),
             Self::Size([width, height]) => {
                 write!(f, "the size must be above 0 and at most {MAX_SIDE_KM} km each way, got {width} x {height}")

@@ -22,6 +22,6 @@ pub mod usgs_dem;
 pub mod void_fill;
 
 pub use bake_world::{BakeRequest, Bytes, Input, bake};
-pub use default_world::{DefaultWorld, default_world};
+pub use default_world::{DefaultWorld, default_request, default_world};
 pub use error::BakeError;
 pub use extent::{MAX_POSTS, MAX_STEP_M, MIN_STEP_M};

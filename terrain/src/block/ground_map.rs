@@ -73,6 +73,8 @@ struct Site {
     cold: f32,
     /// Above 0 in hollows, below on ridges; about 1 in a gully.
     hollow: f32,
+    /// Down the slope: east and south, as long as the slope is steep.
+    down: [f32; 2],
 }
 
 /// The ground map of a block. `shore_m` is the signed distance to the nearest water's edge at a world point (x, z),
@@ -117,11 +119,14 @@ fn sites(field: &Field, block: BlockIndex, climate: &Climate) -> Vec<Site> {
                 .map(|(dc, dr)| field.post_m(column + dc, row + dr))
                 .map(|h| if h.is_nan() { here } else { h });
             let mean = around.iter().sum::<f32>() / around.len() as f32;
+            let steep = (1.0 - n.y * n.y).max(0.0).sqrt() as f32;
             sites.push(Site {
                 height_m: here,
-                steep: (1.0 - n.y * n.y).max(0.0).sqrt() as f32,
+                steep,
                 cold: -n.z as f32 * climate.cold_side,
-                hollow: ((mean - here) / (0.35 * field.grid().step_m as f32)).clamp(-2.0, 2.0),
+                // A dry bed in a plain is as much of a hollow as a gorge in the mountains.
+                hollow: ((mean - here) / ((0.06 + 0.75 * steep) * field.grid().step_m as f32)).clamp(-2.0, 2.0),
+                down: [n.x as f32, n.z as f32],
             });
         }
     }
@@ -138,7 +143,13 @@ fn site_at(sites: &[Site], u: f32, v: f32) -> Site {
         let (north, below) = (at(0, 0) + east * (at(1, 0) - at(0, 0)), at(0, 1) + east * (at(1, 1) - at(0, 1)));
         north + south * (below - north)
     };
-    Site { height_m: mix(|s| s.height_m), steep: mix(|s| s.steep), cold: mix(|s| s.cold), hollow: mix(|s| s.hollow) }
+    Site {
+        height_m: mix(|s| s.height_m),
+        steep: mix(|s| s.steep),
+        cold: mix(|s| s.cold),
+        hollow: mix(|s| s.hollow),
+        down: [mix(|s| s.down[0]), mix(|s| s.down[1])],
+    }
 }
 
 /// Stand-in shore distance of the sea: level ground at 0 m is water, half a cell around it is shore.
@@ -155,11 +166,31 @@ fn sea_m(field: &Field, first_column: i64, first_row: i64, u: f64, v: f64) -> f6
 
 /// Linear albedo by the belts.
 fn albedo(site: Site, climate: &Climate, x_m: f64, z_m: f64, shore_m: f32) -> [f32; 3] {
+    const DESERT: [f32; 3] = [0.30, 0.235, 0.155];
+    const SCRUB: [f32; 3] = [0.150, 0.125, 0.080];
+    const CLAY: [f32; 3] = [0.400, 0.340, 0.255];
+    const STEPPE: [f32; 3] = [0.205, 0.170, 0.085];
+    const MEADOW: [f32; 3] = [0.100, 0.125, 0.042];
+    const FOREST: [f32; 3] = [0.020, 0.036, 0.017];
+    const TUNDRA: [f32; 3] = [0.150, 0.130, 0.080];
+    const SCREE: [f32; 3] = [0.200, 0.175, 0.150];
+    const ROCK: [f32; 3] = [0.085, 0.075, 0.068];
+    const SNOW: [f32; 3] = [0.78, 0.80, 0.83];
+    const ICE: [f32; 3] = [0.56, 0.65, 0.72];
+    const SHALLOW: [f32; 3] = [0.030, 0.085, 0.090];
+    const DEEP: [f32; 3] = [0.008, 0.030, 0.048];
+    const BEACH: [f32; 3] = [0.33, 0.29, 0.22];
+
+    if shore_m < 0.0 {
+        return mix(SHALLOW, DEEP, smooth(0.0, 1_400.0, -shore_m));
+    }
     // Three noises: land forms, stands, patches. World coordinates, so that neighbours agree.
     let broad = noise(x_m / 2_900.0, z_m / 2_900.0, 1);
     let middle = noise(x_m / 830.0, z_m / 830.0, 2);
     let fine = noise(x_m / 260.0, z_m / 260.0, 3);
     let mottle = 0.5 * broad + 0.3 * middle + 0.2 * fine;
+    // Gullies run down the slope: a noise smeared along it.
+    let gully = streaks(x_m, z_m, site.down);
 
     let relative = site.height_m / climate.snow_line_m.max(300.0) + 0.05 * (mottle - 0.5) - 0.04 * site.cold;
     let wet = (0.45 - 0.55 * climate.dryness * (1.0 - smooth(0.30, 0.62, relative)))
@@ -168,53 +199,64 @@ fn albedo(site: Site, climate: &Climate, x_m: f64, z_m: f64, shore_m: f32) -> [f
         + 0.55 * (mottle - 0.5)
         + 0.35 * (1.0 - smooth(0.0, 5_000.0, shore_m.max(0.0)));
 
-    const DESERT: [f32; 3] = [0.30, 0.235, 0.155];
-    const STEPPE: [f32; 3] = [0.215, 0.175, 0.085];
-    const MEADOW: [f32; 3] = [0.105, 0.125, 0.042];
-    const FIELD: [f32; 3] = [0.075, 0.105, 0.032];
-    const FOREST: [f32; 3] = [0.024, 0.042, 0.020];
-    const TUNDRA: [f32; 3] = [0.165, 0.140, 0.085];
-    const SCREE: [f32; 3] = [0.235, 0.205, 0.175];
-    const ROCK: [f32; 3] = [0.135, 0.120, 0.108];
-    const SNOW: [f32; 3] = [0.80, 0.82, 0.85];
-    const ICE: [f32; 3] = [0.62, 0.70, 0.76];
-    const SHALLOW: [f32; 3] = [0.030, 0.085, 0.090];
-    const DEEP: [f32; 3] = [0.008, 0.030, 0.048];
-    const BEACH: [f32; 3] = [0.33, 0.29, 0.22];
-
-    if shore_m < 0.0 {
-        return mix(SHALLOW, DEEP, smooth(0.0, 1_400.0, -shore_m));
-    }
-    let mut colour = mix(DESERT, STEPPE, smooth(-0.1, 0.30, wet));
+    // Semi-desert is gravel, pale clay pans and dark scrub.
+    let clay = smooth(0.56, 0.66, broad + 0.25 * (fine - 0.5)) * (1.0 - smooth(0.03, 0.08, site.steep));
+    let scrub = smooth(0.50, 0.66, middle + 0.5 * (fine - 0.5));
+    let mut colour = mix(mix(DESERT, SCRUB, 0.7 * scrub), CLAY, 0.8 * clay);
+    colour = mix(colour, STEPPE, smooth(-0.1, 0.30, wet));
     colour = mix(colour, MEADOW, smooth(0.25, 0.60, wet));
     // Valley floors that hold water are tilled.
     let tilled =
-        smooth(0.38, 0.55, wet) * (1.0 - smooth(0.03, 0.10, site.steep)) * (1.0 - smooth(0.45, 0.55, relative));
-    colour = mix(colour, FIELD, tilled * smooth(0.35, 0.6, middle));
+        smooth(0.34, 0.44, wet) * (1.0 - smooth(0.025, 0.06, site.steep)) * (1.0 - smooth(0.45, 0.55, relative));
+    colour = mix(colour, field_colour(x_m, z_m), 0.85 * tilled);
     let belt = smooth(0.40, 0.48, relative) * (1.0 - smooth(0.70, 0.76, relative));
     let low_forest = (1.0 - climate.dryness) * (1.0 - smooth(0.55, 0.64, relative)) * smooth(0.05, 0.14, site.steep);
-    let forest =
-        belt.max(low_forest) * smooth(0.42, 0.56, wet + 0.25 * (fine - 0.5)) * (1.0 - smooth(0.62, 0.75, site.steep));
+    let stand = wet + 0.30 * (fine - 0.5) + 0.20 * (gully - 0.5);
+    let forest = belt.max(low_forest) * smooth(0.44, 0.54, stand) * (1.0 - smooth(0.62, 0.75, site.steep));
     colour = mix(colour, FOREST, 0.92 * forest);
     colour = mix(colour, TUNDRA, smooth(0.74, 0.88, relative));
-    let bare = smooth(0.80, 0.98, relative + 0.25 * site.steep);
+    let bare = smooth(0.78, 0.96, relative + 0.30 * site.steep + 0.12 * (gully - 0.5));
     colour = mix(colour, SCREE, bare);
-    let cliff = smooth(0.44, 0.66, site.steep + 0.12 * (fine - 0.5) - 0.05 * site.hollow);
-    colour = mix(colour, ROCK, cliff.max(bare * smooth(0.34, 0.52, site.steep)));
-    // Snow starts lower on cold slopes and in hollows, and slides off walls.
-    let cover = relative + 0.09 * site.cold + 0.035 * site.hollow + 0.10 * (fine - 0.5);
-    let snow =
-        smooth(0.965, 1.035, cover) * (1.0 - 0.9 * smooth(0.62, 0.82, site.steep - 0.25 * (relative - 1.1).max(0.0)));
-    let white = if site.hollow > 0.3 {
-        mix(SNOW, ICE, smooth(0.3, 1.2, site.hollow) * (1.0 - smooth(1.2, 1.4, relative)))
-    } else {
-        SNOW
-    };
-    colour = mix(colour, white, snow);
+    // Posts far apart and smooth sources flatten walls, so rock begins at slopes of 17 degrees.
+    let wall = site.steep + 0.30 * (gully - 0.5) + 0.10 * (fine - 0.5) - 0.05 * site.hollow;
+    let rock = smooth(0.30, 0.44, wall).max(bare * smooth(0.20, 0.36, wall));
+    colour = mix(colour, ROCK, rock * (0.35 + 0.65 * smooth(0.55, 0.80, relative)));
+    // Snow starts lower on cold slopes and in hollows, and slides off walls, less so the higher they stand.
+    let cover = relative + 0.09 * site.cold + 0.035 * site.hollow + 0.10 * (fine - 0.5) + 0.05 * (gully - 0.5);
+    let holds = 1.0 - 0.95 * smooth(0.32, 0.46, wall - 0.35 * (relative - 1.05).max(0.0));
+    let snow = smooth(0.965, 1.035, cover) * holds;
+    let old = smooth(0.3, 1.2, site.hollow) * (1.0 - smooth(1.2, 1.4, relative));
+    colour = mix(colour, mix(SNOW, ICE, old), snow);
     colour = mix(colour, BEACH, (1.0 - smooth(60.0, 220.0, shore_m)) * (1.0 - smooth(0.1, 0.3, site.steep)) * 0.8);
-    // No two patches of one cover are the same shade.
-    let shade = 1.0 + 0.30 * (fine - 0.5) + 0.16 * (middle - 0.5);
+    // No two patches of one cover are the same shade; snow hardly varies.
+    let shade = 1.0 + (1.0 - 0.8 * snow) * (0.34 * (fine - 0.5) + 0.18 * (middle - 0.5) + 0.30 * (gully - 0.5));
     colour.map(|c| c * shade)
+}
+
+/// Noise smeared down a slope, 0..=1, mean 0.5; plain noise on level ground.
+fn streaks(x_m: f64, z_m: f64, down: [f32; 2]) -> f32 {
+    let steep = down[0].hypot(down[1]);
+    let stride_m = f64::from(smooth(0.03, 0.2, steep)) * 70.0 / f64::from(steep.max(0.03));
+    let (dx, dz) = (f64::from(down[0]) * stride_m, f64::from(down[1]) * stride_m);
+    let sum: f32 =
+        (-2..=2).map(|k| value_noise((x_m + dx * f64::from(k)) / 150.0, (z_m + dz * f64::from(k)) / 150.0, 5)).sum();
+    // Means huddle around the middle; spread them again.
+    (0.5 + 1.6 * (sum / 5.0 - 0.5)).clamp(0.0, 1.0)
+}
+
+/// A patchwork of fields, 450 by 330 m, turned against the grid: green crops, stubble, fallow.
+fn field_colour(x_m: f64, z_m: f64) -> [f32; 3] {
+    const CROPS: [[f32; 3]; 5] = [
+        [0.055, 0.100, 0.025],
+        [0.085, 0.120, 0.035],
+        [0.230, 0.190, 0.085],
+        [0.160, 0.140, 0.070],
+        [0.120, 0.095, 0.065],
+    ];
+    // 20 degrees.
+    let (along, across) = (0.9397 * x_m + 0.3420 * z_m, -0.3420 * x_m + 0.9397 * z_m);
+    let (column, row) = ((along / 450.0).floor() as i32, (across / 330.0).floor() as i32);
+    CROPS[(unit(column, row, 77) * CROPS.len() as f32) as usize % CROPS.len()]
 }
 
 fn mix(a: [f32; 3], b: [f32; 3], part: f32) -> [f32; 3] {
@@ -285,7 +327,7 @@ mod tests {
         let climate = Climate::new(42.4f64.to_radians(), 2_400.0);
         assert!((3_600.0..4_100.0).contains(&climate.snow_line_m), "{}", climate.snow_line_m);
         let brightness = |height_m: f32, cold: f32| {
-            let site = Site { height_m, steep: 0.2, cold, hollow: 0.0 };
+            let site = Site { height_m, steep: 0.2, cold, ..Site::default() };
             let mut sum = 0.0;
             for i in 0..100 {
                 sum += albedo(site, &climate, f64::from(i) * 977.0, f64::from(i) * 1_313.0, f32::INFINITY)[1];

@@ -149,7 +149,9 @@ mod tests {
         let (field, area) = (ground.field().clone(), ground.whole());
         let highest = f64::from(ground.pyramid().all().greatest_m);
         let (mut agree, mut all) = (0, 0);
-        for (heading, elevation) in [(2.0, 0.2), (3.3, 0.45), (4.0, 0.1), (0.7, 0.7), (1.5708, 0.3)] {
+        for (heading, elevation) in
+            [(2.0, 0.2), (3.3, 0.45), (4.0, 0.1), (0.7, 0.7), (std::f64::consts::FRAC_PI_2, 0.3)]
+        {
             let to_sun = crate::frame::direction(heading, elevation);
             for row in (20..100).step_by(2) {
                 for column in (20..100).step_by(2) {

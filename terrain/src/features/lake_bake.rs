@@ -36,6 +36,15 @@ pub struct Outline {
     pub rings: Vec<Vec<DVec2>>,
 }
 
+/// What a file has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutlinesRead {
+    /// Outlines that come near the grid.
+    pub outlines: Vec<Outline>,
+    /// Features in the file, those left out too.
+    pub features: usize,
+}
+
 /// Why a file has no lakes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LakesError {
@@ -55,11 +64,11 @@ impl std::error::Error for LakesError {}
 
 /// Reads lakes from GeoJSON: (multi)polygons with the optional properties `name` and `level_m`.
 ///
-/// Outlines that come nowhere near the grid are left out.
+/// Features that are no polygons and outlines that come nowhere near the grid are left out.
 ///
 /// # Errors
 /// [`LakesError`] if it is not GeoJSON, a point is no place on Earth, or a level no height.
-pub fn read_geojson(text: &str, projection: &Projection, grid: &Grid) -> Result<Vec<Outline>, LakesError> {
+pub fn read_geojson(text: &str, projection: &Projection, grid: &Grid) -> Result<OutlinesRead, LakesError> {
     let wrong = |expected: &str, found: String| LakesError { expected: expected.into(), found };
     let features = match text.parse::<GeoJson>() {
         Ok(GeoJson::FeatureCollection(collection)) => collection.features,
@@ -68,6 +77,7 @@ pub fn read_geojson(text: &str, projection: &Projection, grid: &Grid) -> Result<
         Err(error) => return Err(wrong("GeoJSON", error.to_string())),
     };
     let mut points = 0;
+    let count = features.len();
     let mut outlines = Vec::new();
     for feature in features {
         let property = |key| feature.properties.as_ref().and_then(|p| p.get(key));
@@ -117,7 +127,7 @@ pub fn read_geojson(text: &str, projection: &Projection, grid: &Grid) -> Result<
             outlines.push(outline);
         }
     }
-    Ok(outlines)
+    Ok(OutlinesRead { outlines, features: count })
 }
 
 /// The lake of an outline: its own level, or the median of the posts inside, or `None` if there are none.
@@ -236,7 +246,7 @@ mod tests {
                 [[[{lon},42.0],[78.05,42.0],[78.05,42.05],[{lon},42.0]]]}}}}"#
             )
         };
-        let read = |text: &str| read_geojson(text, &projection, &grid);
+        let read = |text: &str| read_geojson(text, &projection, &grid).map(|read| read.outlines);
         let outlines = read(&polygon(r#"{"name":"A"}"#, "78.0")).unwrap();
         assert_eq!((outlines.len(), outlines[0].rings[0].len(), outlines[0].level_m), (1, 3, None));
         let heights: Vec<f32> = vec![7.0; grid.posts()];

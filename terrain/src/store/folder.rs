@@ -7,7 +7,7 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-const INFO: &str = "world.toml";
+pub(super) const INFO: &str = "world.toml";
 const MAX_INFO_BYTES: u64 = 16 << 20;
 
 /// Why a world cannot be read or written.
@@ -75,8 +75,9 @@ pub(super) fn read_info(folder: &Path) -> Result<WorldInfo, StoreError> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Err(not_a_world("a folder without it")),
         Err(error) => return Err(StoreError::io(&path, error)),
     };
-    let mut text = String::new();
-    file.take(MAX_INFO_BYTES).read_to_string(&mut text).map_err(|e| StoreError::io(&path, e))?;
+    let mut bytes = Vec::new();
+    file.take(MAX_INFO_BYTES).read_to_end(&mut bytes).map_err(|e| StoreError::io(&path, e))?;
+    let text = String::from_utf8(bytes).map_err(|_| StoreError::damaged(&path, "UTF-8 text", "other bytes"))?;
     // The version first: another version may have other fields.
     let table: toml::Table =
         text.parse().map_err(|e: toml::de::Error| StoreError::damaged(&path, "TOML", e.message().to_owned()))?;
@@ -104,8 +105,14 @@ pub(super) fn read_checked(
     let entry = info
         .file(name)
         .ok_or_else(|| StoreError::damaged(&folder.join(INFO), format!("an entry for {name}"), "none"))?;
-    let length = fs::metadata(&path).map_err(|e| StoreError::io(&path, e))?.len();
     let expected = bytes.unwrap_or(entry.bytes);
+    let length = match fs::metadata(&path) {
+        Ok(metadata) => metadata.len(),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            return Err(StoreError::damaged(&path, format!("{expected} bytes"), "no such file"));
+        }
+        Err(error) => return Err(StoreError::io(&path, error)),
+    };
     if length != expected || entry.bytes != expected {
         let found = format!("{length} and an entry of {}", entry.bytes);
         return Err(StoreError::damaged(&path, format!("{expected} bytes"), found));
@@ -118,12 +125,28 @@ pub(super) fn read_checked(
     Ok(content)
 }
 
+/// Whether all that is at a path is a world: anything else would be lost when a new one takes its place.
+pub(super) fn may_be_replaced(path: &Path) -> Result<(), StoreError> {
+    if path.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    let kept =
+        |found: String| StoreError::NotAWorld { path: path.to_owned(), found: format!("{found}; it is not replaced") };
+    if !path.join(INFO).is_file() {
+        return Err(kept(if path.is_dir() { "another folder" } else { "a file" }.to_owned()));
+    }
+    for entry in fs::read_dir(path).map_err(|e| StoreError::io(path, e))? {
+        let name = entry.map_err(|e| StoreError::io(path, e))?.file_name();
+        if !super::FILES.iter().any(|file| name == **file) {
+            return Err(kept(format!("one with `{}` in it", name.to_string_lossy())));
+        }
+    }
+    Ok(())
+}
+
 /// Writes a folder beside its place and renames it there.
 pub(super) fn write_folder(path: &Path, info: &WorldInfo, files: &[(&str, &[u8])]) -> Result<(), StoreError> {
-    if path.symlink_metadata().is_ok() && !path.join(INFO).is_file() {
-        let found = if path.is_dir() { "another folder" } else { "a file" };
-        return Err(StoreError::NotAWorld { path: path.to_owned(), found: format!("{found}; it is not replaced") });
-    }
+    may_be_replaced(path)?;
     let mut info = info.clone();
     info.format_version = FORMAT_VERSION;
     info.files = files

@@ -4,6 +4,7 @@
 //! person reads them.
 
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Version of the folder's format that this program writes and reads.
 pub const FORMAT_VERSION: u32 = 1;
@@ -38,6 +39,9 @@ pub struct WorldInfo {
     /// What the heights came from, finest first.
     #[serde(default)]
     pub sources: Vec<Source>,
+    /// What was made of the files of features, by kind.
+    #[serde(default)]
+    pub features: BTreeMap<String, FeatureCount>,
     /// Lakes set to one level.
     #[serde(default)]
     pub lakes: Vec<LakeInfo>,
@@ -108,6 +112,17 @@ pub struct Source {
     pub credit: String,
     /// What must be known about its accuracy; empty if nothing.
     pub note: String,
+}
+
+/// Features of one kind.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FeatureCount {
+    /// In the files.
+    pub read: usize,
+    /// In the world.
+    pub kept: usize,
+    /// Left out: elsewhere, or not of a shape that this kind has.
+    pub skipped: usize,
 }
 
 /// A lake.

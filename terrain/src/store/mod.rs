@@ -13,14 +13,14 @@ mod info;
 mod masks;
 
 pub use folder::StoreError;
-pub use info::{Extent, FORMAT_VERSION, FileInfo, LakeInfo, Source, Statistics, Voids, WorldInfo};
+pub use info::{Extent, FORMAT_VERSION, FeatureCount, FileInfo, LakeInfo, Source, Statistics, Voids, WorldInfo};
 
 use crate::block::rings::{RingMasks, Rings};
 use crate::features::lakes::{Lake, Lakes};
 use crate::field::Field;
 use crate::grid::Grid;
 use crate::projection::{Geodetic, Projection};
-use folder::{read_checked, read_info, write_folder};
+use folder::{may_be_replaced, read_checked, read_info, write_folder};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -29,6 +29,9 @@ use std::sync::Arc;
 const HEIGHTS: &str = "heights.bin";
 const LAKES: &str = "lakes.json";
 const MASKS: &str = "masks.bin";
+
+/// All that a world's folder may hold.
+const FILES: [&str; 4] = [folder::INFO, HEIGHTS, LAKES, MASKS];
 
 /// A world in memory.
 #[derive(Debug, Clone)]
@@ -75,6 +78,16 @@ impl World {
         }
         .checked()
         .map_err(|e| wrong("a grid", e.to_string()))?;
+        let (east_m, south_m) = (info.extent.east_m, info.extent.south_m);
+        if (east_m, south_m, info.statistics.posts) != (grid.east_m(), grid.south_m(), grid.posts()) {
+            let expected = format!(
+                "east_m {}, south_m {} and {} posts, as the step and the blocks say",
+                grid.east_m(),
+                grid.south_m(),
+                grid.posts()
+            );
+            return Err(wrong(&expected, format!("{east_m}, {south_m} and {}", info.statistics.posts)));
+        }
 
         let bytes = read_checked(path, &info, HEIGHTS, Some(4 * grid.posts() as u64))?;
         let heights = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
@@ -108,7 +121,16 @@ impl World {
         self.masks = masks::to_bytes(&RingMasks::new(&self.field, rings.limits_m));
     }
 
-    /// Writes the world; what was there is replaced if it was a world.
+    /// Whether a world may be written there: nothing is there, or a world and nothing else. To be asked before a long
+    /// bake; [`World::write`] asks again.
+    ///
+    /// # Errors
+    /// [`StoreError::NotAWorld`] says what is there that would be lost.
+    pub fn may_be_written(path: &Path) -> Result<(), StoreError> {
+        may_be_replaced(path)
+    }
+
+    /// Writes the world; what was there is replaced if it was a world and nothing else.
     ///
     /// # Errors
     /// [`StoreError`] if something else is there, or the disk refuses.

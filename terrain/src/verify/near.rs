@@ -15,6 +15,9 @@ use std::collections::HashMap;
 /// step is a whole number of metres, and the difference from the ground is 0 and not a rounding.
 const PARTS: f64 = 32.0;
 
+/// A block's heights, as bits, and its triangles.
+type Seen = (Box<[u32]>, Box<[u16]>);
+
 /// Watches a flight; see the module.
 pub struct Near {
     /// Heights, triangles or blocks that were not as they were when first seen.
@@ -25,7 +28,7 @@ pub struct Near {
     pub places: u64,
     /// Blocks looked at, over all looks.
     pub blocks: u64,
-    first: HashMap<BlockIndex, (Box<[u32]>, Box<[u16]>)>,
+    first: HashMap<BlockIndex, Seen>,
     area: Area,
 }
 
@@ -112,10 +115,8 @@ impl Near {
             let place = DVec2::new(turn * 0.754_877_666_246_692_7, turn * 0.569_840_290_998_053_2).fract_gl();
             // Never on a cell's side: on the rim of a void, sides belong to whoever is asked.
             let place = ((place * f64::from(CELLS) * PARTS).floor() + 0.5) / PARTS;
-            let (x_m, z_m) = (
-                grid.x_m(first_column) + place.x * grid.step_m,
-                grid.z_m(first_row) + place.y * grid.step_m,
-            );
+            let (x_m, z_m) =
+                (grid.x_m(first_column) + place.x * grid.step_m, grid.z_m(first_row) + place.y * grid.step_m);
             self.differ(surface.height_m(place), self.area.height_m(x_m, z_m));
             self.places += 1;
         }

@@ -1,14 +1,19 @@
 //! The detail texture: tiling noise that breaks up the ground near the eye.
 //!
-//! RGBA8: red and green a surface slope (0.5 is level), blue and alpha two shades (mean 0.5). Every mip is the mean of
-//! the one below, so with distance the slope fades to level and the shades to grey: no shimmer, no fade to tune.
+//! No feature is longer than a twelfth of the texture, or its repetition would show from the air. RGBA8: red and
+//! green a surface slope (0.5 is level), blue and alpha two shades (mean 0.5). Every mip is the mean
+//! of the one below, a little fainter, so with distance the slope fades to level and the shades to grey: no shimmer, no fade to tune.
+
+/// Contrast that a mip keeps of the one below it beyond plain averaging: what is far enough to show the repetition is
+/// faded out before it does.
+const KEPT: f32 = 0.7;
 
 /// The texture and all its mips, each a square of four-byte texels; `side` a power of two.
 pub fn mip_chain(side: u32) -> Vec<Vec<u8>> {
     let size = side as usize;
-    let relief: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 8, 5, 11)).collect();
-    let shade: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 4, 6, 23)).collect();
-    let grain: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 16, 4, 47)).collect();
+    let relief: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 12, 4, 11)).collect();
+    let shade: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 14, 4, 23)).collect();
+    let grain: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 18, 4, 47)).collect();
     let mut texels: Vec<[f32; 4]> = (0..size * size)
         .map(|at| {
             let (x, y) = (at % size, at / size);
@@ -32,11 +37,9 @@ pub fn mip_chain(side: u32) -> Vec<Vec<u8>> {
             .map(|at| {
                 let (x, y) = (2 * (at % half), 2 * (at / half));
                 std::array::from_fn(|c| {
-                    [(0, 0), (1, 0), (0, 1), (1, 1)]
-                        .iter()
-                        .map(|(dx, dy)| texels[(y + dy) * level_side + x + dx][c])
-                        .sum::<f32>()
-                        / 4.0
+                    let four =
+                        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| texels[(y + dy) * level_side + x + dx][c]);
+                    0.5 + KEPT * (four.iter().sum::<f32>() / 4.0 - 0.5)
                 })
             })
             .collect();
@@ -52,7 +55,13 @@ fn fractal(x: usize, y: usize, size: usize, cells: usize, octaves: u32, seed: u3
         if cells > size {
             break;
         }
-        sum += weight * lattice(x as f32 * cells as f32 / size as f32, y as f32 * cells as f32 / size as f32, cells, seed + octave);
+        sum += weight
+            * lattice(
+                x as f32 * cells as f32 / size as f32,
+                y as f32 * cells as f32 / size as f32,
+                cells,
+                seed + octave,
+            );
         total += weight;
         weight *= 0.6;
     }

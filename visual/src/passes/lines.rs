@@ -79,7 +79,7 @@ pub struct Segment {
 const ATTRIBUTES: [wgpu::VertexAttribute; 5] = wgpu::vertex_attr_array![
     0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32, 4 => Float32
 ];
-const HALO_ALPHA: f32 = 0.6;
+const HALO_ALPHA: f32 = 0.8;
 const HALO_PX: f32 = 1.8;
 /// More than any display needs; what is beyond is left out rather than let memory grow.
 const MOST_SEGMENTS: usize = 100_000;

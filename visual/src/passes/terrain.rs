@@ -1,7 +1,7 @@
 //! Draws the ground: the blocks of a [`Window`] that a view can see, near ones first. Shader: `shaders/terrain.wgsl`.
 //!
-//! One draw call a block, no vertex buffer; blocks with water have a pipeline of their own, so that land does not pay
-//! for it. [`Terrain::follow`] streams within the window's budget, [`Terrain::prepare`] culls and writes what one view
+//! One draw call a block, no vertex buffer. Near land, far land and blocks with water have a pipeline each, so that none
+//! pays for another's looks: the detail texture fades out by itself well within the near radius. [`Terrain::follow`] streams within the window's budget, [`Terrain::prepare`] culls and writes what one view
 //! needs, [`Terrain::draw`] records; all three run on the render thread and never wait.
 //!
 //! Invariant others rely on: a vertex lies at `(post - eye_post) * step - eye_fraction` east and south and `height - eye`
@@ -14,11 +14,14 @@ use crate::gpu::Gpu;
 use crate::shaders;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
-use terrain::block::mesh::TILE;
 use std::sync::Arc;
+use terrain::block::mesh::TILE;
 use terrain::block::payload::Mesh;
 use terrain::block::window::{Draw, Level, MAX_BLOCKS, Upload, Window};
 use terrain::{BlockIndex, CELLS, Grid};
+
+/// Beyond this the detail texture's mips are as good as even: a pixel spans more than its longest feature.
+const DETAIL_REACH_M: f64 = 9_000.0;
 
 /// How the ground is drawn; a change needs a new pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,9 +90,8 @@ pub struct Terrain {
     group: wgpu::BindGroup,
     format: TargetFormat,
     look: TerrainLook,
-    land: wgpu::RenderPipeline,
-    water: wgpu::RenderPipeline,
-    /// For each view: land first, then water, each nearest first.
+    pipelines: [wgpu::RenderPipeline; 3],
+    /// For each view: near land, far land, then water, each nearest first.
     draws: Vec<Vec<Draw>>,
     counts: DrawCounts,
 }
@@ -106,7 +108,13 @@ pub fn eye_uniforms(grid: &Grid, eye_m: DVec3) -> ([i32; 2], [f32; 2]) {
 
 impl Terrain {
     /// Makes textures, pipelines and bindings for a window; nothing is uploaded before the first [`Self::follow`].
-    pub fn new(gpu: &Gpu, frame: &wgpu::BindGroupLayout, format: TargetFormat, window: Window, look: TerrainLook) -> Self {
+    pub fn new(
+        gpu: &Gpu,
+        frame: &wgpu::BindGroupLayout,
+        format: TargetFormat,
+        window: Window,
+        look: TerrainLook,
+    ) -> Self {
         let device = &gpu.device;
         let side = window.settings().blocks;
         let textures = TerrainTextures::new(device, &gpu.queue, side);
@@ -125,7 +133,7 @@ impl Terrain {
         let uniforms = buffer("terrain window", size_of::<WindowUniforms>());
         let table = buffer("terrain blocks", size_of::<BlockEntry>() * (MAX_BLOCKS * MAX_BLOCKS) as usize);
         let group = bind(device, &layout, &textures, &uniforms, &table);
-        let (land, water) = pipelines(gpu, frame, &layout, format, look);
+        let pipelines = pipelines(gpu, frame, &layout, format, look);
         Self {
             entries: vec![BlockEntry::default(); (side * side) as usize],
             window,
@@ -136,8 +144,7 @@ impl Terrain {
             group,
             format,
             look,
-            land,
-            water,
+            pipelines,
             draws: Vec::new(),
             counts: DrawCounts::default(),
         }
@@ -176,7 +183,7 @@ impl Terrain {
     /// Changes how the ground is drawn.
     pub fn set_look(&mut self, gpu: &Gpu, frame: &wgpu::BindGroupLayout, look: TerrainLook) {
         if look != self.look {
-            (self.land, self.water) = pipelines(gpu, frame, &self.layout, self.format, look);
+            self.pipelines = pipelines(gpu, frame, &self.layout, self.format, look);
             self.look = look;
         }
     }
@@ -189,11 +196,14 @@ impl Terrain {
     /// Lets the window follow the eye and the sun, and uploads what it asks for.
     pub fn follow(&mut self, gpu: &Gpu, eye_m: DVec3, speed_mps: f64, to_sun: DVec3) {
         self.window.set_sun(to_sun);
+        let switches = self.window.counters().switches;
         let uploads = self.window.update(DVec2::new(eye_m.x, eye_m.z), speed_mps);
         for upload in &uploads {
             self.textures.apply(&gpu.queue, upload);
         }
-        self.write_table(gpu);
+        if !uploads.is_empty() || self.window.counters().switches != switches {
+            self.write_table(gpu);
+        }
     }
 
     /// Culls for a view and writes what the shader must know of the eye. All views of a frame share one eye.
@@ -209,9 +219,8 @@ impl Terrain {
             // A hair wider than its f32 corners may be off.
             frustum.may_see_box(low.as_vec3() - Vec3::splat(0.1), high.as_vec3() + Vec3::splat(0.1))
         });
-        let window = &self.window;
         // Stable: each part stays nearest first.
-        draws.sort_by_key(|draw| window.resident(draw.slot).is_some_and(|resident| resident.has_water));
+        draws.sort_by_key(|draw| self.kind(draw));
         if view_index == 0 {
             self.counts = self.count(&draws);
             let ([column, row], eye_fraction_m) = eye_uniforms(&grid, view.eye_m);
@@ -247,15 +256,23 @@ impl Terrain {
     pub fn draw(&self, view_index: usize, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_bind_group(1, &self.group, &[]);
         pass.set_index_buffer(self.textures.indices.slice(..), wgpu::IndexFormat::Uint16);
-        let mut wet = None;
+        let mut bound = None;
         for draw in self.draws(view_index) {
-            let is_wet = self.window.resident(draw.slot).is_some_and(|resident| resident.has_water);
-            if wet != Some(is_wet) {
-                pass.set_pipeline(if is_wet { &self.water } else { &self.land });
-                wet = Some(is_wet);
+            let kind = self.kind(draw);
+            if bound != Some(kind) {
+                pass.set_pipeline(&self.pipelines[kind]);
+                bound = Some(kind);
             }
             let slot = draw.slot as u32;
             pass.draw_indexed(self.textures.range(draw.slot, draw.level), 0, slot..slot + 1);
+        }
+    }
+
+    /// Which pipeline draws a block: 0 near land, 1 far land, 2 with water.
+    fn kind(&self, draw: &Draw) -> usize {
+        match self.window.resident(draw.slot) {
+            Some(resident) if resident.has_water => 2,
+            _ => usize::from(draw.distance_m > DETAIL_REACH_M),
         }
     }
 
@@ -351,7 +368,7 @@ fn bind(
         address_mode_v: wgpu::AddressMode::Repeat,
         mag_filter: linear,
         min_filter: linear,
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Nearest,
         ..wgpu::SamplerDescriptor::default()
     });
     let view = wgpu::BindingResource::TextureView;
@@ -365,21 +382,19 @@ fn bind(
         wgpu::BindingResource::Sampler(&map_sampler),
         wgpu::BindingResource::Sampler(&detail_sampler),
     ];
-    let entries: Vec<_> = (0..)
-        .zip(resources)
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-        .collect();
+    let entries: Vec<_> =
+        (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("terrain"), layout, entries: &entries })
 }
 
-/// The pipelines for land and for blocks with water.
+/// The pipelines for near land, far land and blocks with water.
 fn pipelines(
     gpu: &Gpu,
     frame: &wgpu::BindGroupLayout,
     window: &wgpu::BindGroupLayout,
     format: TargetFormat,
     look: TerrainLook,
-) -> (wgpu::RenderPipeline, wgpu::RenderPipeline) {
+) -> [wgpu::RenderPipeline; 3] {
     let device = &gpu.device;
     let module = shaders::module(device, "terrain.wgsl");
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -388,11 +403,11 @@ fn pipelines(
         immediate_size: 0,
     });
     let lines = look.wireframe && device.features().contains(wgpu::Features::POLYGON_MODE_LINE);
-    let constants =
-        [("TILE", f64::from(TILE)), ("DETAIL", f64::from(look.detail.min(2))), ("OVERLAY", f64::from(u8::from(look.overlay)))];
-    let options =
-        wgpu::PipelineCompilationOptions { constants: &constants, ..wgpu::PipelineCompilationOptions::default() };
-    let make = |vertex, fragment| {
+    let make = |vertex, fragment, detail: u32| {
+        let constants =
+            [("TILE", f64::from(TILE)), ("DETAIL", f64::from(detail)), ("OVERLAY", f64::from(u8::from(look.overlay)))];
+        let options =
+            wgpu::PipelineCompilationOptions { constants: &constants, ..wgpu::PipelineCompilationOptions::default() };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(fragment),
             layout: Some(&layout),
@@ -419,7 +434,12 @@ fn pipelines(
             cache: None,
         })
     };
-    (make("terrain_vertex", "terrain_fragment"), make("water_vertex", "water_fragment"))
+    let detail = look.detail.min(2);
+    [
+        make("terrain_vertex", "terrain_fragment", detail),
+        make("terrain_vertex", "terrain_fragment", 0),
+        make("water_vertex", "water_fragment", detail),
+    ]
 }
 
 #[cfg(test)]
@@ -429,9 +449,8 @@ mod tests {
     #[test]
     fn shared_posts_get_equal_bits_from_every_block() {
         // The shader's arithmetic, in the shader's order.
-        let position = |first: i32, local: i32, eye: i32, fraction: f32, step: f32| {
-            (first + local - eye) as f32 * step - fraction
-        };
+        let position =
+            |first: i32, local: i32, eye: i32, fraction: f32, step: f32| (first + local - eye) as f32 * step - fraction;
         let grid = Grid::centred(200.0, 67, 67).unwrap();
         for at in 0..10_000 {
             let x = -201_000.0 + f64::from(at) * 40.2371;

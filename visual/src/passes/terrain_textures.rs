@@ -74,7 +74,9 @@ impl TerrainTextures {
     pub fn bytes(&self) -> usize {
         let posts = (self.blocks_side * TILE) as usize;
         let texels = (self.blocks_side * ground_map::SIDE) as usize;
-        posts * posts * (4 + 2 * 4) + texels * texels * 4 + self.indices.size() as usize
+        posts * posts * (4 + 2 * 4)
+            + texels * texels * 4
+            + self.indices.size() as usize
             + (DETAIL_SIDE * DETAIL_SIDE * 4) as usize * 4 / 3
     }
 

@@ -16,8 +16,9 @@ use terrain::{Area, SurfaceHit};
 /// Half the square's side, pixels.
 const REACH_PX: f64 = 1.0 / 128.0;
 
-/// A meeting further below the ground's surface than this, metres, is one with its underside: far more than f64 rounds.
-const UNDERSIDE_M: f64 = 1e-3;
+/// A meeting further below the ground's surface than this, metres, is one with its underside: more than f64 rounds a
+/// point of a ray of 1,000 km on a wall of 50 to 1, and less than a square spans a metre away.
+const UNDERSIDE_M: f64 = 1e-6;
 
 /// Points along the square's side at the second look.
 const FINE: i32 = 16;

@@ -1,0 +1,105 @@
+//! Building blocks: index lists, masks, payloads; microseconds a block on one core.
+//!
+//! Measured over the same sample of blocks spread over the world. Yardstick of an index list: copying the list of
+//! level 0, what a renderer without levels would do at most.
+
+use super::OWN;
+use super::statistics::{Against, Better, ROUNDS, WARM_UPS, alone, beside, interleave};
+use crate::failure::Failure;
+use crate::open_world;
+use crate::report::BenchResult;
+use glam::DVec3;
+use std::hint::black_box;
+use std::time::Instant;
+use terrain::BlockIndex;
+use terrain::block::mask::{Mask, block_posts};
+use terrain::block::{Rings, light, mesh};
+use terrain::store::World;
+
+/// How much is measured.
+#[derive(Debug, Clone, Copy)]
+pub struct Load {
+    /// Blocks.
+    pub blocks: usize,
+    /// Rounds that count.
+    pub rounds: u32,
+}
+
+impl Load {
+    /// What the program measures with.
+    pub const FULL: Self = Self { blocks: 48, rounds: ROUNDS };
+}
+
+/// Measures on a world.
+///
+/// # Errors
+/// None today; timing functions share their signature.
+pub fn bench(world: &World, load: Load) -> Result<Vec<BenchResult>, Failure> {
+    let field = &world.field;
+    let rings = Rings::new(field.grid(), 24, 1.0);
+    let landscape = open_world::landscape(world, &rings);
+    let all: Vec<BlockIndex> = field.grid().blocks().collect();
+    // A step that has no common factor with the rows spreads them evenly.
+    let stride = (all.len() / load.blocks.max(1)).max(1) | 1;
+    let blocks: Vec<BlockIndex> = all.iter().copied().step_by(stride).take(load.blocks).collect();
+    let posts: Vec<_> = blocks.iter().map(|&block| block_posts(field, block)).collect();
+    let masks: Vec<Mask> = blocks.iter().map(|&block| landscape.masks.mask(field.grid(), block, 1)).collect();
+    let to_sun = DVec3::new(0.5, 0.6, 0.6).normalize();
+    let count = blocks.len();
+    let pyramid = landscape.ground.pyramid();
+    let (whole, none) = (Mask::all(), Mask::NONE);
+    // Lists take a microsecond or ten: many times, so that the clock's own step does not show.
+    let lists = 16 * count;
+    let values = interleave::<Failure>(
+        WARM_UPS,
+        load.rounds,
+        &mut [
+            &mut || Ok(each_us(lists, |_| mesh::indices(&whole, None))),
+            &mut || Ok(each_us(lists, |_| mesh::indices(&none, None))),
+            &mut || Ok(each_us(lists, |at| mesh::indices(&masks[at % count], None))),
+            &mut || Ok(each_us(lists, |_| mesh::level_0().clone())),
+            &mut || Ok(each_us(count, |at| rings.limits_m.map(|limit_m| Mask::for_limit(&posts[at], limit_m)))),
+            &mut || Ok(each_us(count, |at| landscape.payload(blocks[at], to_sun))),
+            &mut || Ok(each_us(count, |at| light::light_map(field, pyramid, blocks[at], to_sun))),
+        ],
+    )?;
+    let [level_0, level_1, mixed, copy, mask, payload, light] = values.as_slice() else { return Ok(Vec::new()) };
+    let fine: u32 = masks.iter().map(Mask::fine).sum();
+    let sub_blocks = (terrain::block::mask::SUBS * terrain::block::mask::SUBS) as f64;
+    let share = 100.0 * f64::from(fine) / (count as f64 * sub_blocks);
+    let copied = Against { name: "copy of the level-0 list", version: OWN, values: copy };
+    let (less, us) = (Better::Less, "us a block");
+    // The rest of a payload is heights, box and ground map; copies of posts are microseconds.
+    let rest: Vec<f64> = payload.iter().zip(light).map(|(payload, light)| payload - light).collect();
+    Ok(vec![
+        beside("indices, level 0", us, less, level_0, copied, "1800 triangles"),
+        beside("indices, level 1", us, less, level_1, copied, "510 triangles"),
+        beside("indices, mixed", us, less, mixed, copied, format!("1 px ring; {share:.0} % of sub-blocks fine")),
+        alone("masks of three rings", us, mask, format!("{count} blocks")),
+        alone("payload", us, payload, format!("{count} blocks")),
+        alone("payload, light map", us, light, "normals and shadows"),
+        alone("payload, ground map and heights", us, &rest, "payload less light map"),
+    ])
+}
+
+/// Microseconds for each of so many pieces of work.
+fn each_us<T>(count: usize, mut work: impl FnMut(usize) -> T) -> f64 {
+    let start = Instant::now();
+    for at in 0..count {
+        black_box(work(at));
+    }
+    start.elapsed().as_secs_f64() * 1e6 / count as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_part_of_a_block_is_measured() {
+        let world = crate::bench::tests::tiny_world();
+        let results = bench(&world, Load { blocks: 3, rounds: 2 }).unwrap();
+        assert_eq!(results.len(), 7);
+        assert!(results.iter().all(|result| result.rounds == 2 && result.ours.is_finite()), "{results:?}");
+    }
+}

@@ -1,0 +1,165 @@
+//! What is flown: the track, for how long, and where pictures are taken.
+//!
+//! The embedded world has a scenic flight. A start, a heading or a speed that is asked for, or another world, gives a
+//! straight track: from the place asked for, or along a diagonal through the world's middle.
+
+use crate::args::FlyArgs;
+use crate::failure::Failure;
+use crate::output;
+use crate::scenery;
+use crate::stage;
+use crate::values::Altitude;
+use glam::DVec3;
+use sim::aircraft::{ALTITUDE_M, AircraftState};
+use sim::track::{Flight, ISSYK_KUL_FLIGHT, TrackError, TrackHeight};
+use sim::{Scene, Track};
+use terrain::store::World;
+use terrain::{Area, Geodetic};
+
+/// Speed of a straight track unless asked for, m/s.
+const SPEED_MPS: f64 = 250.0;
+/// Height of a diagonal track over the highest ground about it, metres.
+const CLEARANCE_M: f64 = 600.0;
+/// How far before and behind a track over ground looks, metres.
+const AHEAD_M: f64 = 3_000.0;
+/// Pictures of a track that names none.
+const PICTURES: u32 = 8;
+/// Frames a second of simulated time, where no clock drives.
+pub const LOCKSTEP_HZ: f64 = 60.0;
+/// Length of a headless flight unless asked for, seconds: some minute of work for a software adapter.
+const HEADLESS_S: f64 = 10.0;
+
+/// When a flight ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Length {
+    /// After this many frames.
+    Frames(u64),
+    /// After this long: of simulated time in lockstep, else of wall time.
+    Seconds(f64),
+    /// When the pilot quits.
+    Endless,
+}
+
+/// A place on the track worth a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PicturePlace {
+    /// Along the track, metres.
+    pub distance_m: f64,
+    /// What it shows.
+    pub name: String,
+}
+
+/// What is flown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The way.
+    pub track: Track,
+    /// Where pictures are taken, however far is flown.
+    pub pictures: Vec<PicturePlace>,
+}
+
+impl Length {
+    /// The length asked for; a headless flight has an end of its own.
+    pub fn of(args: &FlyArgs, headless: bool) -> Self {
+        match (args.frames, args.seconds_s) {
+            (Some(frames), _) => Self::Frames(frames),
+            (None, Some(seconds_s)) => Self::Seconds(seconds_s),
+            (None, None) if headless => Self::Seconds(HEADLESS_S),
+            (None, None) => Self::Endless,
+        }
+    }
+
+    /// Seconds of flight at a pace, if it has an end.
+    fn seconds(self, hz: f64) -> Option<f64> {
+        match self {
+            Self::Frames(frames) => Some(frames as f64 / hz),
+            Self::Seconds(seconds_s) => Some(seconds_s),
+            Self::Endless => None,
+        }
+    }
+}
+
+impl Plan {
+    /// The plan for a command line; `hz` is the pace that frames are expected at.
+    ///
+    /// # Errors
+    /// [`Failure`] if a number makes no track, or a height above ground is asked for where there is none.
+    pub fn new(args: &FlyArgs, length: Length, hz: f64, world: &World, area: &Area) -> Result<Self, Failure> {
+        let is_straight =
+            args.world.is_some() || args.eye.is_some() || args.heading_deg.is_some() || args.speed_mps.is_some();
+        let track = if is_straight { straight(args, length, hz, world, area)? } else { scenic(world)? };
+        let mut pictures: Vec<PicturePlace> = track
+            .pictures()
+            .iter()
+            .map(|(distance_m, name)| PicturePlace { distance_m: *distance_m, name: name.clone() })
+            .collect();
+        if pictures.is_empty() {
+            let apart_m = track.length_m() / f64::from(PICTURES - 1);
+            pictures.extend((0..PICTURES).map(|number| {
+                let distance_m = f64::from(number) * apart_m;
+                PicturePlace { distance_m, name: format!("{:.1} km", distance_m / 1e3) }
+            }));
+        }
+        Ok(Self { track, pictures })
+    }
+
+    /// A scene that flies the plan from its start.
+    pub fn scene(&self, date: sim::UtcTime) -> Scene {
+        let mut scene = Scene::new(AircraftState::level(DVec3::new(0.0, 5_000.0, 0.0), 0.0, SPEED_MPS), date);
+        scene.fly_track(self.track.clone());
+        scene
+    }
+}
+
+fn scenic(world: &World) -> Result<Track, Failure> {
+    let failed = |error: TrackError| Failure::while_doing("reading the built-in flight", error);
+    let flight = Flight::parse(ISSYK_KUL_FLIGHT).map_err(failed)?;
+    let plan = |lat_deg, lon_deg| {
+        let at = world.projection.to_world(Geodetic::from_degrees(lat_deg, lon_deg));
+        (at.x, at.y)
+    };
+    Track::through(&flight, &plan).map_err(failed)
+}
+
+fn straight(args: &FlyArgs, length: Length, hz: f64, world: &World, area: &Area) -> Result<Track, Failure> {
+    let refused = |error: TrackError| Failure::while_doing("laying out the track", error);
+    let height_at = stage::height_at(area);
+    let grid = area.grid();
+    let (wide_m, high_m) = (grid.east_m() - grid.west_m, grid.south_m() - grid.north_m);
+    let speed_mps = args.speed_mps.unwrap_or(SPEED_MPS);
+    let flown_m = length.seconds(hz).map(|seconds_s| (seconds_s * speed_mps).max(1.0));
+    let over_ground = |clearance_m| TrackHeight::AboveHighest { clearance_m, ahead_m: AHEAD_M };
+
+    let Some(place) = args.eye else {
+        let middle_m = (0.5 * (grid.west_m + grid.east_m()), 0.5 * (grid.north_m + grid.south_m()));
+        let heading_rad = args.heading_deg.map_or(wide_m.atan2(high_m), |true_deg| {
+            scenery::grid_heading_rad(world, DVec3::new(middle_m.0, 0.0, middle_m.1), true_deg.to_radians())
+        });
+        // Of the diagonal, nine tenths: the ends are the world's corners.
+        let distance_m = flown_m.unwrap_or(0.9 * wide_m.hypot(high_m)).min(sim::track::LONGEST_M);
+        return Track::centred(middle_m, heading_rad, distance_m, speed_mps, over_ground(CLEARANCE_M), &*height_at)
+            .map_err(refused);
+    };
+    let eye_m = scenery::position(world, area, place)?;
+    let heading_rad = scenery::grid_heading_rad(world, eye_m, args.heading_deg.unwrap_or(0.0).to_radians());
+    let distance_m = flown_m.unwrap_or(100_000.0).min(sim::track::LONGEST_M);
+    let height = match place.altitude {
+        Altitude::GroundM(clearance_m) if speed_mps > 0.0 => over_ground(clearance_m),
+        // Standing still, the ground ahead does not matter.
+        _ => TrackHeight::Msl(eye_m.y),
+    };
+    if let Some(ground_m) = area.height_m(eye_m.x, eye_m.z).filter(|ground_m| eye_m.y < *ground_m) {
+        output::tell(format_args!(
+            "poligon: {:.0} m is {:.0} m under the ground there; the flight starts above it",
+            eye_m.y,
+            ground_m - eye_m.y
+        ));
+    }
+    if !(ALTITUDE_M.0..=ALTITUDE_M.1).contains(&eye_m.y) {
+        return Err(Failure::Misuse(format!(
+            "expected an altitude of {}..={} m to fly at, found {:.0} m",
+            ALTITUDE_M.0, ALTITUDE_M.1, eye_m.y
+        )));
+    }
+    Track::straight((eye_m.x, eye_m.z), heading_rad, distance_m, speed_mps, height, &*height_at).map_err(refused)
+}

@@ -1,0 +1,370 @@
+//! A window: the pilot's flight, against the wall clock, with keyboard and stick.
+//!
+//! It begins on the built-in track, so that there is something to see at once; the first move of a stick or an arrow key
+//! takes over. The eye is sampled after the input was read and after the next image has been waited for, right before the
+//! frame is encoded. A frame's time is from one frame's beginning to the next's.
+
+use super::plan::{LOCKSTEP_HZ, Length, Plan};
+use super::record::{Ending, Record};
+use crate::args::FlyArgs;
+use crate::failure::Failure;
+use crate::output;
+use crate::report::{self, Fly};
+use crate::scenery::{self, Look, Scenery};
+use crate::stage::{self, Captions, Sun};
+use sim::input::joystick::Joystick;
+use sim::input::{Head, Input};
+use sim::run::Message;
+use sim::{Command, Controls, Mode, SimThread, Snapshot};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use terrain::store::World;
+use visual::camera::View;
+use visual::capture::Offscreen;
+use visual::passes::lines::Stroke;
+use visual::window::{self, Call, Event, Flow, WindowError};
+use visual::{Gpu, TextureFormat, TextureView};
+
+/// A stick moved farther than this takes over from the track.
+const TAKES_OVER: f64 = 0.15;
+/// How long a message stays on the display.
+const MESSAGE: Duration = Duration::from_secs(3);
+/// How long a new pilot is told the keys.
+const HELPED: Duration = Duration::from_secs(60);
+/// An input that shows no effect this long has none (time stands still).
+const NO_EFFECT: Duration = Duration::from_secs(1);
+/// Weight of the last frame in the frame time shown: figures that can be read.
+const SMOOTHING: f64 = 0.1;
+
+const HINT_TRACK: &str = "STICK OR ARROW KEYS: FLY YOURSELF   SPACE PAUSE   H DISPLAY   F12 PICTURE   ESC QUIT";
+const HINT_PILOT: &str = "PGUP PGDN THRUST   R RESET   T TRACK   Y SLEW   [ ] HOUR   , . MONTH   F2 F3 GROUND";
+const HINT_CRASHED: &str = "R RESET   Y SLEW";
+const HINT_SLEW: &str = "ARROWS MOVE AND TURN   PGUP PGDN CLIMB   Y FLY FROM HERE";
+
+/// Flies in a window until the pilot quits or the length asked for is flown.
+///
+/// # Errors
+/// [`Failure`] says what was expected and what was found.
+pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, Failure> {
+    let joystick = match Joystick::open() {
+        Ok(joystick) => Some(joystick),
+        Err(error) => {
+            output::tell(format_args!("poligon: flying by keyboard: {error}"));
+            None
+        }
+    };
+    let mut cockpit = Cockpit::new(args, world, started, joystick);
+    let size_px = [args.view.size.width_px, args.view.size.height_px];
+    match window::run("Poligon", size_px, |call| cockpit.answer(call)) {
+        Ok(()) => cockpit.report(),
+        Err(WindowError::Caller(error)) => Err(match error.downcast::<Failure>() {
+            Ok(failure) => *failure,
+            Err(other) => Failure::while_doing("flying", other),
+        }),
+        // Where there is nothing to draw with, the window system's complaint would hide it.
+        Err(error) => Err(match Gpu::headless() {
+            Err(nothing) => Failure::while_doing("opening a window", nothing),
+            Ok(_) => Failure::Failed(format!("opening a window: {error}; `poligon fly --headless` needs none")),
+        }),
+    }
+}
+
+/// What lives as long as the flight.
+struct Cockpit<'a> {
+    args: &'a FlyArgs,
+    length: Length,
+    world: Arc<World>,
+    /// Made anew with each device.
+    stage: Option<(Scenery, TextureFormat)>,
+    flown: Option<Flown>,
+    input: Input,
+    head: Head,
+    hud_shown: bool,
+    record: Record,
+    last_frame: Option<Instant>,
+    frame_ms: f64,
+    /// An input and the controls before it, until a picture shows others.
+    awaited: Option<(Instant, Controls)>,
+    /// An input whose picture is on its way to the screen.
+    shown: Option<Instant>,
+    picture_wanted: bool,
+    pictures: Vec<PathBuf>,
+    message: Option<(String, Instant)>,
+}
+
+/// What begins with the first device.
+struct Flown {
+    sim: SimThread,
+    sun: Sun,
+    /// When the first picture was there.
+    begun: Option<Instant>,
+    /// When the pilot took over from the track.
+    taken_over: Option<Instant>,
+    /// Taking over is under way.
+    taking_over: bool,
+    slowed: (f64, Option<Instant>),
+}
+
+impl<'a> Cockpit<'a> {
+    fn new(args: &'a FlyArgs, world: Arc<World>, started: Instant, joystick: Option<Joystick>) -> Self {
+        Self {
+            args,
+            length: Length::of(args, false),
+            world,
+            stage: None,
+            flown: None,
+            input: Input::new(joystick, Controls::default().throttle),
+            head: Head::default(),
+            hud_shown: true,
+            record: Record::new(started, false),
+            last_frame: None,
+            frame_ms: f64::NAN,
+            awaited: None,
+            shown: None,
+            picture_wanted: false,
+            pictures: Vec::new(),
+            message: None,
+        }
+    }
+
+    fn answer(&mut self, call: Call<'_>) -> window::Answer {
+        // Whatever comes after a frame's callback comes after that frame was presented.
+        if let Some(input) = self.shown.take() {
+            self.record.add_latency(input.elapsed());
+        }
+        match call {
+            Call::Ready { gpu, format, size_px, .. } => self.ready(gpu, format, size_px)?,
+            Call::Event(event) => return Ok(self.event(event)),
+            Call::Frame { gpu, target, size_px } => return Ok(self.frame(gpu, target, size_px)?),
+        }
+        Ok(Flow::Continue)
+    }
+
+    /// Makes what lives on the device; the flight itself outlives it.
+    fn ready(&mut self, gpu: &Gpu, format: TextureFormat, size_px: [u32; 2]) -> Result<(), Failure> {
+        let before = self.stage.take().map(|(scenery, _)| scenery.look.ground);
+        let mut look = Look { size_px, ..Look::of(&self.args.view, gpu.report.kind, false) };
+        look.ground = before.unwrap_or(look.ground);
+        let scenery = Scenery::new(gpu.clone(), format, self.world.clone(), look);
+        if self.flown.is_none() {
+            let plan = Plan::new(self.args, self.length, LOCKSTEP_HZ, &self.world, &scenery.area)?;
+            let date = self.args.view.time.unwrap_or_else(|| scenery::default_moment(&self.world));
+            let height_at = stage::height_at(&scenery.area);
+            let mut scene = plan.scene(date);
+            sim::lockstep(&mut scene, &*height_at, 1);
+            // Held until the first picture is there.
+            scene.clock.set_paused(true);
+            self.flown = Some(Flown {
+                sim: SimThread::start(scene, height_at)
+                    .map_err(|error| Failure::while_doing("starting the simulation", error))?,
+                sun: Sun::new(&self.world, date)?,
+                begun: None,
+                taken_over: None,
+                taking_over: false,
+                slowed: (0.0, None),
+            });
+        }
+        self.stage = Some((scenery, format));
+        Ok(())
+    }
+
+    fn event(&mut self, event: Event) -> Flow {
+        match event {
+            Event::CloseRequested => return Flow::Close,
+            Event::Key { name, down, repeat: false } => {
+                if down && let Some(flown) = &self.flown {
+                    self.awaited.get_or_insert((Instant::now(), flown.sim.last_two().1.controls));
+                }
+                if let Some(command) = self.input.keyboard.key(&name, down) {
+                    return self.command(command);
+                }
+            }
+            Event::Focused(false) => {
+                // Keys let go elsewhere are not told of.
+                self.input.keyboard.release_all();
+                self.head.command(Command::LookEnd);
+            }
+            _ => {}
+        }
+        Flow::Continue
+    }
+
+    fn command(&mut self, command: Command) -> Flow {
+        self.head.command(command);
+        let ground = |cockpit: &mut Self, change: fn(&mut visual::passes::terrain::TerrainLook)| {
+            if let Some((scenery, _)) = &mut cockpit.stage {
+                let mut look = scenery.look.ground;
+                change(&mut look);
+                scenery.set_ground_look(look);
+            }
+        };
+        match command {
+            Command::Quit => return Flow::Close,
+            Command::Hud => self.hud_shown = !self.hud_shown,
+            Command::Screenshot => self.picture_wanted = true,
+            Command::Wireframe => ground(self, |look| look.wireframe = !look.wireframe),
+            Command::BlockOverlay => ground(self, |look| look.overlay = !look.overlay),
+            other => {
+                if let Some(flown) = &self.flown {
+                    flown.sim.send(Message::Command(other));
+                }
+            }
+        }
+        Flow::Continue
+    }
+
+    fn frame(&mut self, gpu: &Gpu, target: &TextureView, size_px: [u32; 2]) -> Result<Flow, Failure> {
+        let now = Instant::now();
+        let took = self.last_frame.replace(now).map(|last| now - last);
+        let wall_s = took.unwrap_or_default().as_secs_f64();
+        if let Some(took) = took {
+            self.record.add_interval(took);
+            let ms = took.as_secs_f64() * 1e3;
+            self.frame_ms =
+                if self.frame_ms.is_finite() { self.frame_ms + SMOOTHING * (ms - self.frame_ms) } else { ms };
+        }
+        let (controls, commands) = self.input.poll(wall_s);
+        for command in commands {
+            if self.command(command) == Flow::Close {
+                return Ok(Flow::Close);
+            }
+        }
+        self.head.update(wall_s);
+        let (Some((scenery, format)), Some(flown)) = (&mut self.stage, &mut self.flown) else {
+            return Ok(Flow::Continue);
+        };
+        if !flown.sim.is_running() {
+            return Err(Failure::Failed("the simulation stopped by itself".to_owned()));
+        }
+        flown.hear(controls);
+
+        let snapshot = flown.sim.now();
+        let view = scenery.view(stage::eye_m(&snapshot), stage::attitude(&snapshot, &self.head), size_px);
+        let to_sun = flown.sun.at(&self.world, snapshot.date);
+        self.record.follow(scenery, &view, &snapshot, to_sun);
+        let hud = if self.hud_shown {
+            let slowed = flown.is_slowed(&snapshot);
+            let message = self.message.as_ref().filter(|(_, since)| since.elapsed() < MESSAGE);
+            let mut status = Vec::new();
+            status.extend(slowed.then_some("SLOWED"));
+            status.extend(message.map(|(text, _)| text.as_str()));
+            let captions = Captions { frame_ms: self.frame_ms, status: &status, hint: flown.hint(&snapshot) };
+            stage::hud(&self.world, &snapshot, &view, &self.head, captions)
+        } else {
+            Vec::new()
+        };
+        let picture = self.picture_wanted.then(|| hud.clone());
+        scenery.draw(&view, to_sun, snapshot.time_s, hud, target).map_err(super::device_failed)?;
+        if let Some((since, before)) = self.awaited {
+            if snapshot.controls != before {
+                self.shown = Some(since);
+            }
+            if self.shown.is_some() || since.elapsed() > NO_EFFECT {
+                self.awaited = None;
+            }
+        }
+        if self.record.frames() == 0 {
+            // The first picture counts when it is there, and time runs from then.
+            gpu.wait().map_err(super::device_failed)?;
+            flown.sim.send(Message::Command(Command::Pause));
+            flown.begun = Some(Instant::now());
+        }
+        self.record.frame(scenery, &view, &snapshot, None);
+        scenery.look.size_px = size_px;
+        if let Some(hud) = picture {
+            self.picture_wanted = false;
+            let format = *format;
+            self.take_picture(&view, &snapshot, to_sun, hud, format);
+        }
+        Ok(if self.is_over() { Flow::Close } else { Flow::Continue })
+    }
+
+    /// Draws the frame once more to where it can be read, and keeps it. That a disk is full ends no flight.
+    fn take_picture(
+        &mut self,
+        view: &View,
+        snapshot: &Snapshot,
+        to_sun: glam::DVec3,
+        hud: Vec<Stroke>,
+        format: TextureFormat,
+    ) {
+        let Some((scenery, _)) = &mut self.stage else { return };
+        let stamp: String = snapshot.date.to_string().chars().filter(|c| c.is_ascii_alphanumeric()).collect();
+        let name = |number: usize| self.args.shots.join(format!("poligon-{stamp}-{number}.png"));
+        let Some(path) = (1..10_000).map(name).find(|path| !path.exists()) else { return };
+        let taken = Offscreen::with_format(&scenery.gpu, view.size_px, format)
+            .and_then(|target| {
+                scenery.draw(view, to_sun, snapshot.time_s, hud, &target.view)?;
+                target.read(&scenery.gpu)
+            })
+            .map_err(|error| error.to_string())
+            .and_then(|picture| picture.write_png(&path).map_err(|error| error.to_string()));
+        let told = match taken {
+            Ok(()) => {
+                output::tell(format_args!("poligon: picture {}", path.display()));
+                self.pictures.push(path);
+                "PICTURE SAVED"
+            }
+            Err(error) => {
+                output::tell(format_args!("poligon: no picture: {error}"));
+                "NO PICTURE"
+            }
+        };
+        self.message = Some((told.to_owned(), Instant::now()));
+    }
+
+    fn is_over(&self) -> bool {
+        match (self.length, self.flown.as_ref().and_then(|flown| flown.begun)) {
+            (Length::Frames(frames), _) => self.record.frames() >= frames,
+            (Length::Seconds(seconds_s), Some(begun)) => begun.elapsed().as_secs_f64() >= seconds_s,
+            _ => false,
+        }
+    }
+
+    fn report(self) -> Result<Fly, Failure> {
+        let (Some((scenery, _)), Some(flown)) = (self.stage, self.flown) else {
+            return Err(Failure::Failed("the window closed before there was a picture".to_owned()));
+        };
+        let flown_s = flown.begun.map_or(0.0, |begun| begun.elapsed().as_secs_f64());
+        let last = flown.sim.stop().map_err(|error| Failure::Failed(error.to_string()))?.snapshot();
+        let ending = Ending { mode: "window", flown_s, steps: last.step, sim_hash: report::hash(last.hash()) };
+        let shots = self.pictures.iter().map(|path| path.display().to_string()).collect();
+        Ok(Fly { shots, ..self.record.report(&scenery, &ending) })
+    }
+}
+
+impl Flown {
+    /// Passes the controls on; a stick that is moved takes over from the track.
+    fn hear(&mut self, controls: Controls) {
+        let on_track = self.sim.last_two().1.flags.mode == Mode::Track;
+        let stick = controls.pitch.abs().max(controls.roll.abs()).max(controls.yaw.abs());
+        if on_track && !self.taking_over && stick > TAKES_OVER {
+            self.taking_over = true;
+            self.taken_over = Some(Instant::now());
+            self.sim.send(Message::Command(Command::Track));
+        }
+        if !on_track {
+            self.taking_over = false;
+        }
+        self.sim.send(Message::Controls(controls));
+    }
+
+    /// Whether wall time was dropped in the last second.
+    fn is_slowed(&mut self, snapshot: &Snapshot) -> bool {
+        if snapshot.slowed_s > self.slowed.0 + 1e-3 {
+            self.slowed = (snapshot.slowed_s, Some(Instant::now()));
+        }
+        self.slowed.1.is_some_and(|since| since.elapsed() < Duration::from_secs(1))
+    }
+
+    fn hint(&self, snapshot: &Snapshot) -> &'static str {
+        match snapshot.flags.mode {
+            _ if snapshot.flags.crashed => HINT_CRASHED,
+            Mode::Track => HINT_TRACK,
+            Mode::Slew => HINT_SLEW,
+            Mode::Pilot if self.taken_over.is_some_and(|since| since.elapsed() < HELPED) => HINT_PILOT,
+            Mode::Pilot => "",
+        }
+    }
+}
