@@ -7,6 +7,7 @@ use rand::{RngExt, SeedableRng};
 use std::sync::Arc;
 use terrain::block::{Landscape, Rings};
 use terrain::verify::pop::Pop;
+use terrain::{Area, CELLS};
 use visual::camera::View;
 use visual::proof::{Stage, depth, grey, heights};
 use visual::{Gpu, GpuError, Scene};
@@ -21,6 +22,10 @@ const PIXELS: u64 = 100_000;
 const LARGEST: usize = 8;
 const SPREAD: usize = 16;
 
+/// Pixels from which on a block shows as a patch: 10 x 10. Of a block behind a crest a few pixels may show, all of them
+/// on its outline; their mean is no shade of grey and is told apart.
+const PATCH_PIXELS: u64 = 100;
+
 /// What was found.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Found {
@@ -28,8 +33,12 @@ pub struct Found {
     pub heights: heights::Heights,
     /// Depth in pictures.
     pub depths: depth::Depths,
-    /// Largest mean and largest single change of grey, of 255.
-    pub grey: (f64, f64),
+    /// Largest mean change of grey of a block that shows as a patch, of 255.
+    pub grey: f64,
+    /// The same over all that show at all.
+    pub grey_any: f64,
+    /// Largest change of a single pixel, of 255.
+    pub grey_worst_pixel: f64,
     /// Switches that were seen.
     pub grey_switches: u64,
 }
@@ -65,14 +74,16 @@ pub fn prove(gpu: &Gpu, subject: &Subject, pops: &[Pop], told: &dyn Fn(f64)) -> 
     let mut found = Found::default();
     near(gpu, subject, &mut found, told)?;
     let mut stage = stage(gpu, subject, [1080, 1080])?;
-    let chosen = chosen(pops);
+    let chosen = chosen(&subject.landscape.ground.whole(), pops);
     for (number, pop) in chosen.iter().enumerate() {
         told(0.4 + 0.6 * number as f64 / chosen.len() as f64);
         let view = grey::view_of(&stage, pop.switch.block, pop.eye_m);
         let change = grey::change(&mut stage, &view, pop.switch.block, pop.switch.from, pop.switch.to)?;
-        if change.pixels > 0 {
-            found.grey_switches += 1;
-            found.grey = (found.grey.0.max(change.mean), found.grey.1.max(change.worst));
+        found.grey_switches += u64::from(change.pixels > 0);
+        found.grey_any = found.grey_any.max(change.mean);
+        found.grey_worst_pixel = found.grey_worst_pixel.max(change.worst);
+        if change.pixels >= PATCH_PIXELS {
+            found.grey = found.grey.max(change.mean);
         }
     }
     Ok(found)
@@ -102,8 +113,11 @@ fn near(gpu: &Gpu, subject: &Subject, found: &mut Found, told: &dyn Fn(f64)) -> 
         // 2 m to 6 km, evenly by ratio.
         let above_m = 2.0 * 3_000f64.powf(rng.random_range(0.0..1.0));
         let elevation_rad = if eye % EYES == 0 { -std::f64::consts::FRAC_PI_2 } else { rng.random_range(-1.3..0.1) };
-        let attitude =
-            terrain::frame::attitude(rng.random_range(0.0..6.28), elevation_rad, rng.random_range(-0.5..0.5));
+        let attitude = terrain::frame::attitude(
+            rng.random_range(0.0..std::f64::consts::TAU),
+            elevation_rad,
+            rng.random_range(-0.5..0.5),
+        );
         let view = View::fov_y(DVec3::new(at.x, ground_m + above_m, at.y), attitude, 60f64.to_radians(), size_px);
         stage.follow(&view);
         stage.draw(&view)?;
@@ -122,16 +136,32 @@ fn near(gpu: &Gpu, subject: &Subject, found: &mut Found, told: &dyn Fn(f64)) -> 
     Ok(())
 }
 
-/// Which switches to look at, in the order of the track.
-fn chosen(pops: &[Pop]) -> Vec<Pop> {
+/// Which switches to look at, in the order of the track: of blocks that the eye sees.
+fn chosen(area: &Area, pops: &[Pop]) -> Vec<Pop> {
     // One that moves nothing shows nothing.
     let moving: Vec<usize> = (0..pops.len()).filter(|at| pops[*at].move_m > 0.0).collect();
-    let mut largest = moving.clone();
-    largest.sort_by(|a, b| pops[*b].px.total_cmp(&pops[*a].px));
-    largest.truncate(LARGEST);
-    let spread = (0..SPREAD.min(moving.len())).map(|at| moving[at * moving.len() / SPREAD.min(moving.len())]);
-    let mut all: Vec<usize> = largest.into_iter().chain(spread).collect();
+    let mut by_px = moving.clone();
+    by_px.sort_by(|a, b| pops[*b].px.total_cmp(&pops[*a].px));
+    let mut all: Vec<usize> = by_px.into_iter().filter(|at| is_seen(area, &pops[*at])).take(LARGEST).collect();
+    // From each part of the track the first that is seen.
+    for part in moving.chunks(moving.len().div_ceil(SPREAD).max(1)) {
+        all.extend(part.iter().find(|at| is_seen(area, &pops[**at])));
+    }
     all.sort_unstable();
     all.dedup();
     all.into_iter().map(|at| pops[at]).collect()
+}
+
+/// Whether any of some posts of a switching block is in sight, a little above the ground.
+fn is_seen(area: &Area, pop: &Pop) -> bool {
+    let (field, grid) = (area.field(), area.grid());
+    let block = pop.switch.block;
+    (0..=CELLS).step_by(3).any(|row| {
+        (0..=CELLS).step_by(3).any(|column| {
+            let (column, row) = (block.first_column() + i64::from(column), block.first_row() + i64::from(row));
+            let height_m = f64::from(field.post_m(column, row)) + 1.0;
+            let post = DVec3::new(grid.x_m(column), height_m, grid.z_m(row));
+            height_m.is_finite() && area.segment(pop.eye_m, post).is_none()
+        })
+    })
 }

@@ -472,7 +472,7 @@ mod tests {
                 for roll in -6..=6 {
                     let input = HudInput {
                         pitch_rad: f64::from(pitch) * 0.1745,
-                        roll_rad: f64::from(roll) * 0.5236,
+                        roll_rad: f64::from(roll) * std::f64::consts::FRAC_PI_6,
                         true_heading_rad: f64::from(pitch * 7 + roll),
                         viewport_px,
                         ..level()

@@ -232,8 +232,10 @@ pub struct Pop {
     pub max_px: f64,
     /// Largest vertical move of a point, metres.
     pub max_move_m: f64,
-    /// Largest mean change of grey over a block, of 255; null without an adapter.
+    /// Largest mean change of grey over a block that shows in at least 100 pixels, of 255; null without an adapter.
     pub max_grey: Option<f64>,
+    /// The same with blocks that show in fewer; null without an adapter.
+    pub max_grey_any: Option<f64>,
     /// Largest change of grey of one pixel, of 255; null without an adapter.
     pub worst_pixel_grey: Option<f64>,
     /// Switches whose grey was looked at; null without an adapter.
@@ -638,7 +640,7 @@ mod tests {
             names(&verify),
             "t_junctions position_mismatches edges_checked.templates edges_checked.pairs edges_checked.window eyes \
              far.error_max_m far.errors_max_m far.limits_m far.violations pop.max_px pop.max_move_m pop.max_grey \
-             pop.worst_pixel_grey pop.grey_switches pop.switches pop.track_km near.height_changes \
+             pop.max_grey_any pop.worst_pixel_grey pop.grey_switches pop.switches pop.track_km near.height_changes \
              near.max_difference_m near.places gpu.vertices_checked gpu.height_mismatches gpu.position_mismatches \
              gpu.pixels_checked gpu.pixels_outside gpu.pixels_excluded"
         );

@@ -292,8 +292,9 @@ fn picture(
     let found = gpu_proof::prove(&gpu, &subject, pops, &|share| bar.show(share))
         .map_err(|error| Failure::while_doing("verifying the picture", error))?;
     report.pop.grey_switches = Some(found.grey_switches);
-    report.pop.max_grey = Some(found.grey.0);
-    report.pop.worst_pixel_grey = Some(found.grey.1);
+    report.pop.max_grey = Some(found.grey);
+    report.pop.max_grey_any = Some(found.grey_any);
+    report.pop.worst_pixel_grey = Some(found.grey_worst_pixel);
     report.gpu = Some(report::Gpu {
         vertices_checked: found.heights.vertices_checked,
         height_mismatches: found.heights.height_mismatches,

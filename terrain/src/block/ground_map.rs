@@ -119,11 +119,13 @@ fn sites(field: &Field, block: BlockIndex, climate: &Climate) -> Vec<Site> {
                 .map(|(dc, dr)| field.post_m(column + dc, row + dr))
                 .map(|h| if h.is_nan() { here } else { h });
             let mean = around.iter().sum::<f32>() / around.len() as f32;
+            let steep = (1.0 - n.y * n.y).max(0.0).sqrt() as f32;
             sites.push(Site {
                 height_m: here,
-                steep: (1.0 - n.y * n.y).max(0.0).sqrt() as f32,
+                steep,
                 cold: -n.z as f32 * climate.cold_side,
-                hollow: ((mean - here) / (0.35 * field.grid().step_m as f32)).clamp(-2.0, 2.0),
+                // A dry bed in a plain is as much of a hollow as a gorge in the mountains.
+                hollow: ((mean - here) / ((0.06 + 0.75 * steep) * field.grid().step_m as f32)).clamp(-2.0, 2.0),
                 down: [n.x as f32, n.z as f32],
             });
         }
@@ -165,6 +167,8 @@ fn sea_m(field: &Field, first_column: i64, first_row: i64, u: f64, v: f64) -> f6
 /// Linear albedo by the belts.
 fn albedo(site: Site, climate: &Climate, x_m: f64, z_m: f64, shore_m: f32) -> [f32; 3] {
     const DESERT: [f32; 3] = [0.30, 0.235, 0.155];
+    const SCRUB: [f32; 3] = [0.150, 0.125, 0.080];
+    const CLAY: [f32; 3] = [0.400, 0.340, 0.255];
     const STEPPE: [f32; 3] = [0.205, 0.170, 0.085];
     const MEADOW: [f32; 3] = [0.100, 0.125, 0.042];
     const FOREST: [f32; 3] = [0.020, 0.036, 0.017];
@@ -195,7 +199,11 @@ fn albedo(site: Site, climate: &Climate, x_m: f64, z_m: f64, shore_m: f32) -> [f
         + 0.55 * (mottle - 0.5)
         + 0.35 * (1.0 - smooth(0.0, 5_000.0, shore_m.max(0.0)));
 
-    let mut colour = mix(DESERT, STEPPE, smooth(-0.1, 0.30, wet));
+    // Semi-desert is gravel, pale clay pans and dark scrub.
+    let clay = smooth(0.56, 0.66, broad + 0.25 * (fine - 0.5)) * (1.0 - smooth(0.03, 0.08, site.steep));
+    let scrub = smooth(0.50, 0.66, middle + 0.5 * (fine - 0.5));
+    let mut colour = mix(mix(DESERT, SCRUB, 0.7 * scrub), CLAY, 0.8 * clay);
+    colour = mix(colour, STEPPE, smooth(-0.1, 0.30, wet));
     colour = mix(colour, MEADOW, smooth(0.25, 0.60, wet));
     // Valley floors that hold water are tilled.
     let tilled =

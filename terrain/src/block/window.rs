@@ -612,8 +612,8 @@ impl Window {
             let Some(level) = place(&mesh, slot, uploads, left) else { continue };
             self.slots[slot] = Some(Resident { block, ring, level, range, has_water, lit });
         }
-        let complete = self.wanted_blocks().all(|block| self.slots[self.slot(block)].is_some());
-        if complete {
+        let moving = self.jumping || self.shift.is_some();
+        if moving && self.wanted_blocks().all(|block| self.slots[self.slot(block)].is_some()) {
             self.jumping = false;
             if let Some(shift) = self.shift.take() {
                 self.origin.x += shift.dx;

@@ -35,11 +35,11 @@ pub fn prove(landscape: &Landscape) -> Far {
             let heights_m = tile_heights_m(field, *block);
             let ground = Surface::ground(&heights_m);
             let mut far = Far::default();
-            for ring in 0..FAR_RINGS {
+            for (ring, limit_m) in limits_m.iter().enumerate() {
                 let mesh = landscape.mesh(*block, ring + 1);
                 let error_m = greatest_difference_m(&Surface::of(mesh.indices(), &heights_m), &ground);
                 far.errors_max_m[ring] = error_m;
-                far.violations += u64::from(error_m > limits_m[ring] + ROUNDING_M);
+                far.violations += u64::from(error_m > limit_m + ROUNDING_M);
                 far.meshes += 1;
             }
             far

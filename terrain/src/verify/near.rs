@@ -15,6 +15,9 @@ use std::collections::HashMap;
 /// step is a whole number of metres, and the difference from the ground is 0 and not a rounding.
 const PARTS: f64 = 32.0;
 
+/// A block's heights, as bits, and its triangles.
+type Seen = (Box<[u32]>, Box<[u16]>);
+
 /// Watches a flight; see the module.
 pub struct Near {
     /// Heights, triangles or blocks that were not as they were when first seen.
@@ -25,7 +28,7 @@ pub struct Near {
     pub places: u64,
     /// Blocks looked at, over all looks.
     pub blocks: u64,
-    first: HashMap<BlockIndex, (Box<[u32]>, Box<[u16]>)>,
+    first: HashMap<BlockIndex, Seen>,
     area: Area,
 }
 
@@ -50,7 +53,8 @@ impl Near {
             }
         }
         self.blocks += near;
-        self.height_changes += self.wanted(eye, radius_m).abs_diff(near);
+        let wanted = self.wanted(eye, radius_m);
+        self.height_changes += wanted.abs_diff(near);
     }
 
     /// Blocks of the world with any ground whose nearest point is nearer than the radius.
@@ -59,8 +63,9 @@ impl Near {
         let (from, to) = (eye - radius_m, eye + radius_m);
         let (first, last) = (grid.block_at(from.x, from.y), grid.block_at(to.x, to.y));
         let mut wanted = 0;
-        for z in first.z.max(0)..=last.z.min(grid.blocks_z as i32 - 1) {
-            for x in first.x.max(0)..=last.x.min(grid.blocks_x as i32 - 1) {
+        // One more on each side: the distance decides, not a rounding.
+        for z in (first.z - 1).max(0)..=(last.z + 1).min(grid.blocks_z as i32 - 1) {
+            for x in (first.x - 1).max(0)..=(last.x + 1).min(grid.blocks_x as i32 - 1) {
                 let block = BlockIndex { x, z };
                 let near = grid.distance_to_block_m(eye.x, eye.y, block) < radius_m;
                 wanted += u64::from(near && self.has_ground(block));

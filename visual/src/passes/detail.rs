@@ -1,8 +1,12 @@
 //! The detail texture: tiling noise that breaks up the ground near the eye.
 //!
 //! No feature is longer than a twelfth of the texture, or its repetition would show from the air. RGBA8: red and
-//! green a surface slope (0.5 is level), blue and alpha two shades (mean 0.5). Every mip is the mean of
-//! the one below, so with distance the slope fades to level and the shades to grey: no shimmer, no fade to tune.
+//! green a surface slope (0.5 is level), blue and alpha two shades (mean 0.5). Every mip is the mean
+//! of the one below, a little fainter, so with distance the slope fades to level and the shades to grey: no shimmer, no fade to tune.
+
+/// Contrast that a mip keeps of the one below it beyond plain averaging: what is far enough to show the repetition is
+/// faded out before it does.
+const KEPT: f32 = 0.7;
 
 /// The texture and all its mips, each a square of four-byte texels; `side` a power of two.
 pub fn mip_chain(side: u32) -> Vec<Vec<u8>> {
@@ -33,11 +37,9 @@ pub fn mip_chain(side: u32) -> Vec<Vec<u8>> {
             .map(|at| {
                 let (x, y) = (2 * (at % half), 2 * (at / half));
                 std::array::from_fn(|c| {
-                    [(0, 0), (1, 0), (0, 1), (1, 1)]
-                        .iter()
-                        .map(|(dx, dy)| texels[(y + dy) * level_side + x + dx][c])
-                        .sum::<f32>()
-                        / 4.0
+                    let four =
+                        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| texels[(y + dy) * level_side + x + dx][c]);
+                    0.5 + KEPT * (four.iter().sum::<f32>() / 4.0 - 0.5)
                 })
             })
             .collect();

@@ -196,11 +196,14 @@ impl Terrain {
     /// Lets the window follow the eye and the sun, and uploads what it asks for.
     pub fn follow(&mut self, gpu: &Gpu, eye_m: DVec3, speed_mps: f64, to_sun: DVec3) {
         self.window.set_sun(to_sun);
+        let switches = self.window.counters().switches;
         let uploads = self.window.update(DVec2::new(eye_m.x, eye_m.z), speed_mps);
         for upload in &uploads {
             self.textures.apply(&gpu.queue, upload);
         }
-        self.write_table(gpu);
+        if !uploads.is_empty() || self.window.counters().switches != switches {
+            self.write_table(gpu);
+        }
     }
 
     /// Culls for a view and writes what the shader must know of the eye. All views of a frame share one eye.

@@ -160,13 +160,5 @@ fn look(caster: &Caster<'_>, at: [f64; 2], centre: Met, drawn: f32, found: &mut 
         found.worst_steps = found.worst_steps.max(steps);
         let off_m = (near_m / f64::from(drawn) - centre.along_m).abs();
         found.worst_m = found.worst_m.max(off_m);
-        if std::env::var_os("POLIGON_DEBUG_DEPTH").is_some() {
-            eprintln!(
-                "{at:?} along {} drawn {} off {off_m} steps {steps} spread-steps {}",
-                centre.along_m,
-                near_m / f64::from(drawn),
-                (greatest - least) / (f64::from(drawn) * f64::from(f32::EPSILON))
-            );
-        }
     }
 }
