@@ -201,7 +201,7 @@ fn segments(area: &Area, engine: &HeightField, load: Load) -> Result<Vec<BenchRe
 }
 
 /// A segment of a length within a range (in plan, evenly in its logarithm), within the world: from 2 to 3,000 m above
-/// the ground to a place that in every other case is on it, else as high again.
+/// the ground to a place that in every other case is a metre under it (on it, rounding would decide), else as high again.
 fn segment(area: &Area, random: &mut StdRng, [least_km, most_km]: [f64; 2]) -> Option<Segment> {
     let grid = *area.grid();
     let above_m = |random: &mut StdRng| 2.0 * 1_500f64.powf(random.random_range(0.0..1.0));
@@ -215,7 +215,7 @@ fn segment(area: &Area, random: &mut StdRng, [least_km, most_km]: [f64; 2]) -> O
         let end = DVec2::new(x_m + length_m * heading.sin(), z_m - length_m * heading.cos());
         let (Some(from_m), Some(to_m)) = (area.height_m(x_m, z_m), area.height_m(end.x, end.y)) else { continue };
         let from = DVec3::new(x_m, from_m + above_m(random), z_m);
-        let target_m = if random.random_bool(0.5) { 0.0 } else { above_m(random) };
+        let target_m = if random.random_bool(0.5) { -1.0 } else { above_m(random) };
         return Some(Segment { from, to: DVec3::new(end.x, to_m + target_m, end.y) });
     }
     None
@@ -294,8 +294,8 @@ mod tests {
                 (a, b) => a.is_none() && b.is_none(),
             });
         }
-        // The engine loses hits on cell lines, and a target on the ground may round to either side of it.
-        assert!(same >= 180, "{same} of 200");
+        // The engine loses hits on cell lines.
+        assert!(same >= 195, "{same} of 200");
     }
 
     #[test]
