@@ -27,8 +27,8 @@ override OVERLAY: u32 = 0u;
 
 struct Surface {
     @builtin(position) @invariant clip: vec4<f32>,
-    // Column and row in the block, in posts.
-    @location(0) local: vec2<f32>,
+    // Column and row in the block, in posts; level of the ground map.
+    @location(0) local: vec3<f32>,
     // Light scattered towards the eye, and the share of the ground's own light that arrives.
     @location(1) haze: vec4<f32>,
     // Slot's corner in the window, in blocks, and the level for the overlay.
@@ -37,7 +37,7 @@ struct Surface {
 
 struct WaterSurface {
     @builtin(position) @invariant clip: vec4<f32>,
-    @location(0) local: vec2<f32>,
+    @location(0) local: vec3<f32>,
     @location(1) haze: vec4<f32>,
     @location(2) @interpolate(flat) slot: vec3<f32>,
     @location(3) relative_m: vec3<f32>,
@@ -50,7 +50,7 @@ fn terrain_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) sl
     let post = post_of(index, slot);
     var surface: Surface;
     surface.clip = frame.clip_from_relative * vec4<f32>(post.relative_m, 1.0);
-    surface.local = vec2<f32>(post.local);
+    surface.local = vec3<f32>(vec2<f32>(post.local), map_level(post.relative_m));
     surface.haze = haze(post.relative_m);
     surface.slot = vec3<f32>(vec2<f32>(post.slot), post.level);
     return surface;
@@ -61,7 +61,7 @@ fn water_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) slot
     let post = post_of(index, slot);
     var surface: WaterSurface;
     surface.clip = frame.clip_from_relative * vec4<f32>(post.relative_m, 1.0);
-    surface.local = vec2<f32>(post.local);
+    surface.local = vec3<f32>(vec2<f32>(post.local), map_level(post.relative_m));
     surface.haze = haze(post.relative_m);
     surface.slot = vec3<f32>(vec2<f32>(post.slot), post.level);
     surface.relative_m = post.relative_m;
@@ -81,9 +81,15 @@ fn light_at(local: vec2<f32>, slot: vec2<f32>) -> vec4<f32> {
     return textureSampleLevel(light_maps, map_sampler, texel * window.light_texel, window.light_layer, 0.0);
 }
 
-fn map_at(local: vec2<f32>, slot: vec2<f32>) -> vec4<f32> {
-    let texel = slot * MAP_SIDE + local * ((MAP_SIDE - 1.0) / f32(TILE - 2u)) + 0.5;
-    return textureSampleLevel(ground_maps, map_sampler, texel * window.map_texel, 0.0);
+fn map_at(local: vec3<f32>, slot: vec2<f32>) -> vec4<f32> {
+    let texel = slot * MAP_SIDE + local.xy * ((MAP_SIDE - 1.0) / f32(TILE - 2u)) + 0.5;
+    return textureSampleLevel(ground_maps, map_sampler, texel * window.map_texel, local.z);
+}
+
+// Level 1 where a texel of level 0 spans less than about two pixels across, and so less than one up a slope.
+fn map_level(relative_m: vec3<f32>) -> f32 {
+    let texel_px = window.step_m * (f32(TILE - 2u) / (MAP_SIDE - 1.0)) * frame.focal_px / length(relative_m);
+    return clamp(2.8 - texel_px, 0.0, 1.0);
 }
 
 // Radiance of ground of an albedo under sun and sky; `light` is a texel of the light map, `tilt` bends its normal.
@@ -100,13 +106,13 @@ fn lit(albedo: vec3<f32>, light: vec4<f32>, tilt: vec2<f32>) -> vec3<f32> {
 
 @fragment
 fn terrain_fragment(surface: Surface) -> @location(0) vec4<f32> {
-    let light = light_at(surface.local, surface.slot.xy);
+    let light = light_at(surface.local.xy, surface.slot.xy);
     let map = map_at(surface.local, surface.slot.xy);
     var albedo = map.rgb * map.rgb;
     var tilt = vec2<f32>(0.0);
     if DETAIL > 0u {
         // Whole repeats a block, so that borders match.
-        let near = textureSample(detail_texture, detail_sampler, surface.local * (11.0 / f32(TILE - 2u)));
+        let near = textureSample(detail_texture, detail_sampler, surface.local.xy * (11.0 / f32(TILE - 2u)));
         tilt = (near.rg - 0.5) * 0.30;
         // Bright ground, such as snow, is the more even one.
         albedo = albedo * (1.0 + (near.b - 0.5) * (0.8 - 0.7 * map.g));
@@ -122,11 +128,11 @@ fn terrain_fragment(surface: Surface) -> @location(0) vec4<f32> {
 
 @fragment
 fn water_fragment(surface: WaterSurface) -> @location(0) vec4<f32> {
-    let light = light_at(surface.local, surface.slot.xy);
+    let light = light_at(surface.local.xy, surface.slot.xy);
     let map = map_at(surface.local, surface.slot.xy);
     // The shore line between texels, about as wide as a pixel.
     let wet = smoothstep(0.49, 0.51, map.a);
-    let ripple_at = surface.local * (60.0 / f32(TILE - 2u)) + vec2<f32>(frame.time_s * 0.004, frame.time_s * 0.0027);
+    let ripple_at = surface.local.xy * (60.0 / f32(TILE - 2u)) + vec2<f32>(frame.time_s * 0.004, frame.time_s * 0.0027);
     let near = textureSample(detail_texture, detail_sampler, ripple_at);
     let ground = lit(map.rgb * map.rgb * mix(0.55 + 0.9 * near.b, 1.0, wet), light, (near.rg - 0.5) * 0.3 * (1.0 - wet));
 

@@ -22,10 +22,6 @@ const PIXELS: u64 = 100_000;
 const LARGEST: usize = 8;
 const SPREAD: usize = 16;
 
-/// Pixels from which on a block shows as a patch: 10 x 10. Of a block behind a crest a few pixels may show, all of them
-/// on its outline; their mean is no shade of grey and is told apart.
-const PATCH_PIXELS: u64 = 100;
-
 /// What was found.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Found {
@@ -33,9 +29,9 @@ pub struct Found {
     pub heights: heights::Heights,
     /// Depth in pictures.
     pub depths: depth::Depths,
-    /// Largest mean change of grey of a block that shows as a patch, of 255.
+    /// Largest mean change of grey over a block's surface, of 255.
     pub grey: f64,
-    /// The same over all that show at all.
+    /// The same with outlines.
     pub grey_any: f64,
     /// Largest change of a single pixel, of 255.
     pub grey_worst_pixel: f64,
@@ -80,11 +76,9 @@ pub fn prove(gpu: &Gpu, subject: &Subject, pops: &[Pop], told: &dyn Fn(f64)) -> 
         let view = grey::view_of(&stage, pop.switch.block, pop.eye_m);
         let change = grey::change(&mut stage, &view, pop.switch.block, pop.switch.from, pop.switch.to)?;
         found.grey_switches += u64::from(change.pixels > 0);
-        found.grey_any = found.grey_any.max(change.mean);
+        found.grey = found.grey.max(change.mean);
+        found.grey_any = found.grey_any.max(change.mean_any);
         found.grey_worst_pixel = found.grey_worst_pixel.max(change.worst);
-        if change.pixels >= PATCH_PIXELS {
-            found.grey = found.grey.max(change.mean);
-        }
     }
     Ok(found)
 }

@@ -232,7 +232,7 @@ pub struct Pop {
     pub max_px: f64,
     /// Largest vertical move of a point, metres.
     pub max_move_m: f64,
-    /// Largest mean change of grey over a block that shows in at least 100 pixels, of 255; null without an adapter.
+    /// Largest mean change of grey over a block's surface at a switch, of 255; null without an adapter.
     pub max_grey: Option<f64>,
     /// The same with blocks that show in fewer; null without an adapter.
     pub max_grey_any: Option<f64>,

@@ -18,8 +18,11 @@ use crate::grid::{BlockIndex, CELLS};
 /// Texels along a ground map.
 pub const SIDE: u32 = 64;
 
-/// Bytes of a ground map.
-pub const BYTES: usize = (SIDE * SIDE * 4) as usize;
+/// Bytes of a ground map: all texels, then those of its one mip, each the mean of four.
+pub const BYTES: usize = MAP_BYTES + MAP_BYTES / 4;
+
+/// Bytes of the texels without the mip.
+pub const MAP_BYTES: usize = (SIDE * SIDE * 4) as usize;
 
 /// Shore distance at which alpha saturates, metres, at a post step of 200 m; scales with the step.
 pub const SHORE_RAMP_M: f64 = 400.0;
@@ -100,7 +103,20 @@ pub fn ground_map(field: &Field, block: BlockIndex, climate: &Climate, shore_m: 
             texels.push((127.5 - 127.5 * (shore / ramp_m).clamp(-1.0, 1.0)).round() as u8);
         }
     }
+    add_mip(&mut texels);
     texels.into_boxed_slice()
+}
+
+/// Appends the mip: from some 37 km on a texel is less than a pixel high, and its contrast would only flicker.
+fn add_mip(texels: &mut Vec<u8>) {
+    let side = SIDE as usize;
+    for at in 0..side * side / 4 {
+        let (column, row) = (2 * (at % (side / 2)), 2 * (at / (side / 2)));
+        for channel in 0..4 {
+            let texel = |dc: usize, dr: usize| u16::from(texels[((row + dr) * side + column + dc) * 4 + channel]);
+            texels.push(((texel(0, 0) + texel(1, 0) + texel(0, 1) + texel(1, 1) + 2) / 4) as u8);
+        }
+    }
 }
 
 /// Sites of the block's posts, row by row.

@@ -51,7 +51,7 @@ impl TerrainTextures {
             blocks_side,
             heights: texture("heights", posts, 1, 1, wgpu::TextureFormat::R32Float),
             lights: texture("light maps", posts, 2, 1, unorm),
-            ground_maps: texture("ground maps", texels, 1, 1, unorm),
+            ground_maps: texture("ground maps", texels, 1, 2, unorm),
             detail: texture("detail", DETAIL_SIDE, 1, detail_mips, unorm),
             indices: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("terrain indices"),
@@ -75,7 +75,7 @@ impl TerrainTextures {
         let posts = (self.blocks_side * TILE) as usize;
         let texels = (self.blocks_side * ground_map::SIDE) as usize;
         posts * posts * (4 + 2 * 4)
-            + texels * texels * 4
+            + texels * texels * 5
             + self.indices.size() as usize
             + (DETAIL_SIDE * DETAIL_SIDE * 4) as usize * 4 / 3
     }
@@ -92,7 +92,9 @@ impl TerrainTextures {
                 write(queue, &self.heights, 0, place(*slot, TILE, 0), TILE, heights);
                 write(queue, &self.lights, 0, place(*slot, TILE, *layer), TILE, &payload.light);
                 let side = ground_map::SIDE;
-                write(queue, &self.ground_maps, 0, place(*slot, side, 0), side, &payload.ground_map);
+                let (map, mip) = payload.ground_map.split_at(ground_map::MAP_BYTES);
+                write(queue, &self.ground_maps, 0, place(*slot, side, 0), side, map);
+                write(queue, &self.ground_maps, 1, place(*slot, side / 2, 0), side / 2, mip);
             }
             Upload::Light { slot, layer, light } => {
                 write(queue, &self.lights, 0, place(*slot, TILE, *layer), TILE, light);

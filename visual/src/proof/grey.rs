@@ -1,8 +1,11 @@
 //! What a switch of level changes in the picture, in grey.
 //!
 //! The eye stands where the window switches and looks at the block. Two pictures are drawn that differ in that block's
-//! mesh alone. Grey is the luma of the shown (sRGB-coded) colour, 0 to 255; the change is the mean of its absolute
-//! difference over the pixels where either picture shows the block, found from depth.
+//! mesh alone. Grey is the luma of the shown (sRGB-coded) colour, 0 to 255; which pixels show the block is found from
+//! depth. The change is the mean of the absolute difference over the block's *surface*: pixels that show it in both
+//! pictures, and so do their four neighbours. On its outline a block may move by the pixel that the limit grants, against
+//! whatever lies behind; that is what the pop in pixels bounds, and it is no shade of the surface. The mean over all
+//! pixels, outline included, and the worst single one are told beside it.
 
 use super::Stage;
 use crate::camera::View;
@@ -13,10 +16,14 @@ use terrain::BlockIndex;
 /// What a switch changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GreyChange {
-    /// Pixels that show the block in either picture.
+    /// Pixels of the block's surface.
     pub pixels: u64,
     /// Mean over them, of 255.
     pub mean: f64,
+    /// Pixels that show the block in either picture.
+    pub pixels_any: u64,
+    /// Mean over those, of 255.
+    pub mean_any: f64,
     /// Largest change of one of them, of 255.
     pub worst: f64,
 }
@@ -61,26 +68,36 @@ pub fn change(
     }
     let grid = landscape.ground.field().grid();
     let [width, height] = view.size_px;
+    let [(old, old_depth), (new, new_depth)] = &pictures[..] else { return Ok(GreyChange::default()) };
+    let shown = |depths: &[f32]| -> Vec<bool> {
+        let shows = |at: u32| {
+            let (x, y) = (f64::from(at % width) + 0.5, f64::from(at / width) + 0.5);
+            let depth = depths[at as usize];
+            let point = view.eye_m + view.ray(x / f64::from(width), y / f64::from(height)) * (view.near_m / f64::from(depth));
+            depth > 0.0 && grid.block_at(point.x, point.z) == block
+        };
+        (0..width * height).map(shows).collect()
+    };
+    let (before, after) = (shown(old_depth), shown(new_depth));
+    let side = width as usize;
+    let both = |at: usize| before.get(at) == Some(&true) && after.get(at) == Some(&true);
     let mut found = GreyChange::default();
-    let mut sum = 0.0;
-    for y in 0..height {
-        for x in 0..width {
-            let at = (y * width + x) as usize;
-            let shows = |depth: f32| {
-                let ray = view.ray((f64::from(x) + 0.5) / f64::from(width), (f64::from(y) + 0.5) / f64::from(height));
-                let point = view.eye_m + ray * (view.near_m / f64::from(depth));
-                depth > 0.0 && grid.block_at(point.x, point.z) == block
-            };
-            let [(old, old_depth), (new, new_depth)] = &pictures[..] else { continue };
-            if shows(old_depth[at]) || shows(new_depth[at]) {
-                let change = (luma(&old.rgba[4 * at..]) - luma(&new.rgba[4 * at..])).abs();
-                found.pixels += 1;
-                sum += change;
-                found.worst = found.worst.max(change);
-            }
+    for at in 0..before.len() {
+        if !before[at] && !after[at] {
+            continue;
+        }
+        let change = (luma(&old.rgba[4 * at..]) - luma(&new.rgba[4 * at..])).abs();
+        found.pixels_any += 1;
+        found.mean_any += change;
+        found.worst = found.worst.max(change);
+        let around = [at.wrapping_sub(1), at + 1, at.wrapping_sub(side), at + side];
+        if both(at) && around.iter().all(|at| both(*at)) {
+            found.pixels += 1;
+            found.mean += change;
         }
     }
-    found.mean = sum / found.pixels.max(1) as f64;
+    found.mean /= found.pixels.max(1) as f64;
+    found.mean_any /= found.pixels_any.max(1) as f64;
     Ok(found)
 }
 
