@@ -105,7 +105,11 @@ fn a_switch_of_ring_moves_less_than_a_pixel() {
     let (landscape, rings) = mountains();
     let mut flight = Flight::new(landscape, rings, 12);
     let mut pops = Vec::new();
-    for eye in pop::line(DVec2::new(-20_000.0, 9_000.0), DVec2::new(20_000.0, -8_000.0), 50.0) {
+    let start = DVec2::new(-20_000.0, 9_000.0);
+    // The first update fills the window by distance alone, the second brings the margins of flight.
+    flight.fly_to(start, 300.0);
+    flight.fly_to(start, 300.0);
+    for eye in pop::line(start, DVec2::new(20_000.0, -8_000.0), 50.0) {
         pops.extend(pop::step(&mut flight, DVec3::new(eye.x, 4_000.0, eye.y), 300.0));
     }
     let worst = pops.iter().map(|pop| pop.px).fold(0.0, f64::max);
@@ -142,11 +146,11 @@ fn the_device_has_the_posts_and_draws_the_ground() {
         let pixels = (0..40_000).map(|_| [rng.random_range(0..480), rng.random_range(0..360)]);
         let drawn = stage.depth().unwrap();
         sum = sum.and(depth::compare(&area, &view, &drawn, rings.radii_m[0], 4_000, pixels));
-        // The same picture seen from 1 cm higher is not the ground's.
-        let off = View { eye_m: eye_m + DVec3::Y * 0.01, ..view };
+        // The same picture seen from 2 % higher is not the ground's.
+        let off = View { eye_m: eye_m + DVec3::Y * (0.02 * above_m), ..view };
         let pixels = (0..40_000).map(|_| [rng.random_range(0..480), rng.random_range(0..360)]);
         let found = depth::compare(&area, &off, &drawn, rings.radii_m[0], 1_000, pixels);
-        assert!(found.pixels_outside > 0, "{found:?}");
+        assert!(2 * found.pixels_outside > found.pixels_checked, "{found:?}");
     }
     assert!(sum.pixels_checked > 8_000, "{sum:?}");
     assert_eq!(sum.pixels_outside, 0, "{sum:?}");

@@ -192,13 +192,12 @@ fn flights(landscape: &Arc<Landscape>, rings: &Rings, report: &mut report::Verif
     for (number, (from, to, above_m)) in tracks.into_iter().enumerate() {
         let mut flight = Flight::new(landscape.clone(), *rings, WINDOW);
         let track = pop::line(from, to, STEP_M);
+        // The first update fills the window by distance alone, the second brings the margins of flight: no one sees it.
+        flight.fly_to(from, SPEED_MPS);
+        flight.fly_to(from, SPEED_MPS);
         for (at, eye) in track.iter().enumerate() {
             let eye_m = over(*eye, above_m);
-            let mut found = pop::step(&mut flight, eye_m, SPEED_MPS);
-            // The first picture has nothing to pop from.
-            if at > 0 {
-                pops.append(&mut found);
-            }
+            pops.extend(pop::step(&mut flight, eye_m, SPEED_MPS));
             near.look(&flight, *eye, if at % 50 == 0 { 4 } else { 0 });
             if at % 200 == 0 {
                 lay_out(&flight, eye_m, report);
@@ -238,6 +237,13 @@ fn astray(landscape: &Arc<Landscape>, rings: &Rings, middle: DVec2, near: &mut N
         }
         eye += DVec2::from_angle(heading_rad) * speed_mps / 60.0;
         flight.fly_to(eye, speed_mps);
+        // After a jump the window fills within its budget; until then the picture is known to be incomplete.
+        for _ in 0..100 {
+            if step % 300 != 0 || (flight.window().late_blocks() == 0 && !flight.window().is_jumping()) {
+                break;
+            }
+            flight.fly_to(eye, 0.0);
+        }
         near.look(&flight, eye, if step % 50 == 0 { 4 } else { 0 });
         if step % 150 == 0 {
             lay_out(&flight, DVec3::new(eye.x, 2_000.0, eye.y), report);

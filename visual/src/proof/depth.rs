@@ -7,7 +7,7 @@
 //! pixel lies outside of those, at 17 x 17 points, because a fold within the square has its extreme on the fold.
 //!
 //! A pixel whose square holds a silhouette is left out: some rays meet nothing, or the depths spread further than the
-//! planes that were met explain.
+//! planes that were met explain. Over void there is nothing to compare.
 
 use crate::camera::View;
 use glam::DVec3;
@@ -15,6 +15,10 @@ use terrain::{Area, SurfaceHit};
 
 /// Half the square's side, pixels.
 const REACH_PX: f64 = 1.0 / 128.0;
+
+/// A meeting further below the ground's surface than this, metres, is one with its underside: more than f64 rounds a
+/// point of a ray of 1,000 km on a wall of 50 to 1, and less than a square spans a metre away.
+const UNDERSIDE_M: f64 = 1e-6;
 
 /// Points along the square's side at the second look.
 const FINE: i32 = 16;
@@ -93,10 +97,12 @@ impl Caster<'_> {
         let plan = ray.x.hypot(ray.z);
         // Straight down the radius is never reached; nothing is 1,000 km below.
         let reach_m = (self.radius_m / plan.max(1e-9)).min(1e6);
-        let SurfaceHit { fraction, normal, .. } =
+        let SurfaceHit { fraction, point, normal } =
             self.area.segment(self.view.eye_m, self.view.eye_m + ray * reach_m)?;
         let along_m = fraction * reach_m;
-        if along_m <= self.view.near_m {
+        // A ray through a hole in the data meets the ground's underside at the hole's far rim, where nothing is drawn.
+        let below = self.area.height_m(point.x, point.z).is_none_or(|height_m| height_m > point.y + UNDERSIDE_M);
+        if along_m <= self.view.near_m || below {
             return None;
         }
         // Over a plane 1 / along is linear in the picture: its gradient against its value, over the square's diagonal.
