@@ -30,9 +30,9 @@ pub struct Effort {
 
 impl Effort {
     /// Minutes.
-    pub const FULL: Self = Self { quick: false, size_px: [1280, 720], places: 4, rounds: 3 };
+    pub const FULL: Self = Self { quick: false, size_px: [1280, 720], places: 4, rounds: 9 };
     /// Less than three minutes.
-    pub const QUICK: Self = Self { quick: true, size_px: [1280, 720], places: 2, rounds: 4 };
+    pub const QUICK: Self = Self { quick: true, size_px: [1280, 720], places: 2, rounds: 7 };
 }
 
 #[cfg(test)]

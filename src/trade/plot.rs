@@ -130,13 +130,14 @@ fn body(knob: &Knob) -> String {
     for (at, point) in points.iter().enumerate() {
         let (px, py) = (x(point.cost), y(point.error));
         put(format!("<circle cx=\"{px:.1}\" cy=\"{py:.1}\" r=\"4\" fill=\"#1f5fa8\"/>"));
-        // Labels stand above and below in turn where points crowd, and inward at the right edge.
-        let crowded = points.iter().any(|other| {
+        // Labels stand to the right of their points, to the left where another point is in the way or the edge is near.
+        let in_the_way = |other: &&KnobPoint| {
             let (dx, dy) = (x(other.cost) - px, y(other.error) - py);
-            (dx, dy) != (0.0, 0.0) && dx.abs() < 40.0 && dy.abs() < 16.0
-        });
-        let label_y = if crowded && at % 2 == 1 { py + 18.0 } else { py - 9.0 };
-        let (label_x, anchor) = if px > WIDTH - RIGHT - 60.0 { (px - 6.0, "end") } else { (px + 6.0, "start") };
+            dx > 0.0 && dx < 60.0 && dy.abs() < 14.0
+        };
+        let left = px > WIDTH - RIGHT - 60.0 || points.iter().any(in_the_way);
+        let (label_x, anchor) = if left { (px - 9.0, "end") } else { (px + 9.0, "start") };
+        let label_y = py + 4.0;
         let label =
             if at == 0 { format!("{} {}", shown(point.setting), escaped(&knob.unit)) } else { shown(point.setting) };
         put(format!(

@@ -16,7 +16,8 @@ use visual::{Gpu, GpuError};
 pub struct Actor {
     scenery: Scenery,
     target: Offscreen,
-    times_ms: Vec<f64>,
+    /// For each camera the times of its rounds.
+    times_ms: Vec<Vec<f64>>,
     triangles: Vec<f64>,
     surface_px: Spread,
     pictures: Vec<Picture>,
@@ -25,7 +26,7 @@ pub struct Actor {
 /// What was seen of a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seen {
-    /// Median time of a frame.
+    /// Mean over the cameras of the median time of a frame.
     pub ms: f64,
     /// Mean triangles of a frame.
     pub triangles: u64,
@@ -69,7 +70,7 @@ impl Actor {
     /// What was seen.
     pub fn seen(&self) -> Seen {
         Seen {
-            ms: median(&self.times_ms),
+            ms: self.times_ms.iter().map(|rounds| median(rounds)).sum::<f64>() / self.times_ms.len() as f64,
             triangles: (self.triangles.iter().sum::<f64>() / self.triangles.len() as f64) as u64,
             surface_rms_px: self.surface_px.rms(),
             surface_max_px: self.surface_px.largest,
@@ -103,9 +104,11 @@ pub fn play(actors: &mut [Actor], cameras: &[Camera], to_sun: DVec3, effort: &Ef
         for actor in actors.iter_mut() {
             actor.look_from(camera, to_sun)?;
         }
+        actors.iter_mut().for_each(|actor| actor.times_ms.push(Vec::new()));
         for _ in 0..effort.rounds {
             for actor in actors.iter_mut() {
-                actor.times_ms.push(camera.frame_ms(&mut actor.scenery, to_sun, &actor.target)?);
+                let ms = camera.frame_ms(&mut actor.scenery, to_sun, &actor.target)?;
+                actor.times_ms.last_mut().into_iter().for_each(|rounds| rounds.push(ms));
             }
         }
     }
