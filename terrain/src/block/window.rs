@@ -7,7 +7,7 @@
 //! Per update, in this order and within one byte budget: meshes of blocks that change ring, the row or column of a shift
 //! in progress, light for a new sun. The row ahead is built before it is needed, so a shift only waits for its uploads;
 //! it commits when complete, until then the old window stands. A block turns finer a margin before it must and coarser
-//! two margins behind, so a builder's delay is never seen. Light is double-buffered and flips for all blocks together.
+//! a little behind that, so a builder's delay is never seen and no block flickers. Light is double-buffered and flips for all blocks together.
 //!
 //! Invariant others rely on: with the eye inside the window's middle two blocks, every block within `n/2 - 1` blocks is
 //! there; what is drawn depends on the eye's path only, not on time, when [`Settings::wait`] is set.
@@ -18,6 +18,7 @@ use super::rings::Rings;
 use crate::grid::BlockIndex;
 use crate::pyramid::Range;
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -44,6 +45,9 @@ pub const BUDGET_BYTES: usize = 128 << 10;
 
 /// Bytes that one frame may upload after a jump, while the picture is incomplete anyway.
 const JUMP_BUDGET_BYTES: usize = 4 << 20;
+
+/// Blocks along the squares that are culled as one.
+const GROUP: usize = 4;
 
 /// A turn of the sun that asks for new light: 0.5 degrees.
 const RELIGHT_COS: f64 = 0.999_961_923;
@@ -148,7 +152,18 @@ pub struct Window {
     started: bool,
     jumping: bool,
     eye: DVec2,
+    quiet: Option<Quiet>,
     counters: Counters,
+}
+
+/// Nothing is owed and nothing will be wanted while the eye stays within a circle: most frames are no work at all.
+#[derive(Debug, Clone, Copy)]
+struct Quiet {
+    from: DVec2,
+    reach_m: f64,
+    speed_mps: f64,
+    /// The sides on which the window is built ahead.
+    ahead: [bool; 2],
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -188,6 +203,7 @@ impl Window {
             started: false,
             jumping: false,
             eye: DVec2::ZERO,
+            quiet: None,
             counters: Counters::default(),
             landscape,
             settings,
@@ -259,6 +275,7 @@ impl Window {
         let back = 1 - self.front;
         self.suns[back] = to_sun;
         self.relighting = true;
+        self.quiet = None;
         self.lights.clear();
         self.slots.iter_mut().flatten().for_each(|resident| resident.lit[back] = false);
         for job in self.builder.withdraw(|job| matches!(job, Job::Light { .. })) {
@@ -270,10 +287,19 @@ impl Window {
     pub fn update(&mut self, eye: DVec2, speed_mps: f64) -> Vec<Upload> {
         let eye = if eye.is_finite() { eye.clamp(DVec2::splat(-1e8), DVec2::splat(1e8)) } else { self.eye };
         self.eye = eye;
+        // Rounded up, so that a speed that trembles is one speed.
+        let speed_mps = if speed_mps.is_finite() { (speed_mps.abs() / 20.0).ceil() * 20.0 } else { 0.0 };
         self.collect();
+        if self.is_quiet(speed_mps) {
+            self.counters.upload_bytes = 0;
+            return Vec::new();
+        }
         self.follow();
+        if !self.started {
+            self.build_all();
+        }
         self.ask(speed_mps);
-        if self.settings.wait || !self.started {
+        if self.settings.wait {
             while !self.asked.is_empty() {
                 match self.builder.wait() {
                     Some(built) => self.take(built),
@@ -294,26 +320,40 @@ impl Window {
         self.started = true;
         self.counters.upload_bytes = before - left;
         self.counters.upload_bytes_total += self.counters.upload_bytes as u64;
+        self.quiet = self.settled(speed_mps);
         uploads
     }
 
-    /// The blocks of the committed window that are there and `visible`, nearest first.
-    pub fn draws(&self, visible: impl Fn(BlockIndex, Range) -> bool) -> Vec<Draw> {
+    /// The blocks of the committed window that are there and visible, nearest first.
+    ///
+    /// `visible` judges a square of blocks: the north-western one, how many along a side, and the range of heights. It is
+    /// asked for squares of several blocks first and must not refuse one that holds a visible block.
+    pub fn draws(&self, visible: impl Fn(BlockIndex, i32, Range) -> bool) -> Vec<Draw> {
         let grid = self.landscape.ground.field().grid();
-        let mut draws: Vec<Draw> = self
-            .slots
-            .iter()
-            .enumerate()
-            .filter_map(|(slot, resident)| {
-                let resident = resident
-                    .as_ref()
-                    .filter(|r| self.is_shown(r.block) && !r.range.is_void() && visible(r.block, r.range))?;
-                let Resident { block, level, ring, range, .. } = *resident;
-                let distance_m = grid.distance_to_block_m(self.eye.x, self.eye.y, block);
-                Some(Draw { slot, block, level, ring, distance_m, range })
-            })
-            .collect();
-        draws.sort_by(|a, b| a.distance_m.total_cmp(&b.distance_m).then(a.slot.cmp(&b.slot)));
+        let all = self.landscape.ground.pyramid().all();
+        let n = self.n();
+        let mut draws = Vec::new();
+        for (group_z, group_x) in (0..n).step_by(GROUP).flat_map(|z| (0..n).step_by(GROUP).map(move |x| (z, x))) {
+            let corner = BlockIndex { x: self.origin.x + group_x, z: self.origin.z + group_z };
+            if !visible(corner, GROUP as i32, all) {
+                continue;
+            }
+            for z in corner.z..(corner.z + GROUP as i32).min(self.origin.z + n) {
+                for x in corner.x..(corner.x + GROUP as i32).min(self.origin.x + n) {
+                    let slot = self.slot(BlockIndex { x, z });
+                    let Some(resident) = self.slots[slot]
+                        .as_ref()
+                        .filter(|r| self.is_shown(r.block) && !r.range.is_void() && visible(r.block, 1, r.range))
+                    else {
+                        continue;
+                    };
+                    let Resident { block, level, ring, range, .. } = *resident;
+                    let distance_m = grid.distance_to_block_m(self.eye.x, self.eye.y, block);
+                    draws.push(Draw { slot, block, level, ring, distance_m, range });
+                }
+            }
+        }
+        draws.sort_unstable_by(|a: &Draw, b| a.distance_m.total_cmp(&b.distance_m).then(a.slot.cmp(&b.slot)));
         draws
     }
 
@@ -347,7 +387,7 @@ impl Window {
     /// Order-free fingerprint of what is drawn: blocks, slots, rings and levels.
     pub fn mesh_hash(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325u64;
-        for draw in self.draws(|_, _| true) {
+        for draw in self.draws(|_, _, _| true) {
             let triangles = match draw.level {
                 Level::Zero => 1,
                 Level::One => 2,
@@ -453,6 +493,15 @@ impl Window {
         }
     }
 
+    /// Builds the whole window on all cores: there is no picture yet that could wait.
+    fn build_all(&mut self) {
+        let blocks: Vec<BlockIndex> = self.wanted_blocks().collect();
+        let (landscape, to_sun) = (&self.landscape, self.suns[self.front]);
+        let built: Vec<Arc<Payload>> =
+            blocks.par_iter().map(|block| Arc::new(landscape.payload(*block, to_sun))).collect();
+        self.ready.extend(built.into_iter().map(|payload| (payload.block, payload)));
+    }
+
     /// Asks for all that is wanted and neither there, ready nor asked for; forgets what is no longer near.
     fn ask(&mut self, speed_mps: f64) {
         let grid = *self.landscape.ground.field().grid();
@@ -516,7 +565,42 @@ impl Window {
     fn collect(&mut self) {
         while let Some(built) = self.builder.try_take() {
             self.take(built);
+            self.quiet = None;
         }
+    }
+
+    /// Whether the last look at every block still holds.
+    fn is_quiet(&self, speed_mps: f64) -> bool {
+        self.quiet.is_some_and(|quiet| {
+            let offset = self.offset();
+            self.eye.distance(quiet.from) < quiet.reach_m
+                && speed_mps == quiet.speed_mps
+                && [offset.x > 0.0, offset.y > 0.0] == quiet.ahead
+                && offset.abs().max_element() <= 0.5
+        })
+    }
+
+    /// How far the eye may go before any block wants another ring; `None` while anything is owed.
+    fn settled(&self, speed_mps: f64) -> Option<Quiet> {
+        if !self.asked.is_empty() || self.shift.is_some() || self.jumping || self.relighting {
+            return None;
+        }
+        let grid = self.landscape.ground.field().grid();
+        let (finer_m, coarser_m) = margins(speed_mps);
+        let radii_m = &self.settings.rings.radii_m;
+        let mut reach_m = f64::INFINITY;
+        for resident in self.slots.iter().flatten() {
+            let distance_m = grid.distance_to_block_m(self.eye.x, self.eye.y, resident.block);
+            if let Some(radius_m) = resident.ring.checked_sub(1).and_then(|inner| radii_m.get(inner)) {
+                reach_m = reach_m.min(distance_m - finer_m - radius_m);
+            }
+            if let Some(radius_m) = radii_m.get(resident.ring) {
+                reach_m = reach_m.min(radius_m + coarser_m - distance_m);
+            }
+        }
+        let offset = self.offset();
+        let ahead = [offset.x > 0.0, offset.y > 0.0];
+        (reach_m > 0.0).then_some(Quiet { from: self.eye, reach_m, speed_mps, ahead })
     }
 
     fn take(&mut self, built: Built) {
@@ -672,14 +756,14 @@ impl Window {
     }
 }
 
-/// How far before a ring's radius a block turns finer, and how far behind it coarser, metres.
+/// How far before a ring's radius a block turns finer, and how far behind it coarser again, metres.
 fn margins(speed_mps: f64) -> (f64, f64) {
-    // A builder answers within a few frames; half a second of flight is ample.
-    let margin_m = 250.0 + 0.5 * speed_mps.abs().min(20_000.0);
-    (margin_m, 2.0 * margin_m)
+    // A builder answers within a frame or two, and meshes go before all else; a fifth of a second of flight is ample.
+    let margin_m = 60.0 + 0.2 * speed_mps.abs().min(20_000.0);
+    (margin_m, margin_m + 60.0)
 }
 
-/// The ring a block should be drawn for: finer a margin early, coarser two margins late.
+/// The ring a block should be drawn for: finer a margin early, coarser a little behind that.
 fn wanted_ring(rings: &Rings, ring: usize, distance_m: f64, speed_mps: f64) -> usize {
     let (finer, coarser) = margins(speed_mps);
     let (fine, coarse) = (rings.ring_at(distance_m - finer), rings.ring_at(distance_m - coarser));

@@ -89,7 +89,7 @@ impl Flight {
 
     /// All blocks of the window that are drawn, whichever way the eye looks.
     pub fn draws(&self) -> Vec<Draw> {
-        self.window.draws(|_, _| true)
+        self.window.draws(|_, _, _| true)
     }
 
     /// What is drawn for a block.

@@ -3,7 +3,7 @@
 //! At each block's change of ring both surfaces are laid over each other ([`super::surface`]); a vertical difference of
 //! `g` metres at a plan distance of `d` metres spans at most `g / d * focal` pixels. It is taken at every vertex of the
 //! overlay with its own distance, from where the window really switches: a margin before a ring's radius when it turns
-//! finer, two margins behind it when it turns coarser.
+//! finer, a little behind it when it turns coarser.
 
 use super::flight::{Flight, RingSwitch};
 use super::surface::{Surface, differences};

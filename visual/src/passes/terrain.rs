@@ -211,7 +211,8 @@ impl Terrain {
         let grid = *self.window.landscape().ground.field().grid();
         let frustum = view.frustum();
         let side_m = grid.block_m();
-        let mut draws = self.window.draws(|block, range| {
+        let mut draws = self.window.draws(|block, along, range| {
+            let side_m = side_m * f64::from(along);
             let west_m = grid.x_m(block.first_column()) - view.eye_m.x;
             let north_m = grid.z_m(block.first_row()) - view.eye_m.z;
             let low = DVec3::new(west_m, f64::from(range.least_m) - view.eye_m.y, north_m);

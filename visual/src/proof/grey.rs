@@ -73,7 +73,8 @@ pub fn change(
         let shows = |at: u32| {
             let (x, y) = (f64::from(at % width) + 0.5, f64::from(at / width) + 0.5);
             let depth = depths[at as usize];
-            let point = view.eye_m + view.ray(x / f64::from(width), y / f64::from(height)) * (view.near_m / f64::from(depth));
+            let point =
+                view.eye_m + view.ray(x / f64::from(width), y / f64::from(height)) * (view.near_m / f64::from(depth));
             depth > 0.0 && grid.block_at(point.x, point.z) == block
         };
         (0..width * height).map(shows).collect()

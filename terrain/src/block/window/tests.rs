@@ -53,7 +53,7 @@ impl Gpu {
     fn check(&self, window: &Window) {
         let (layer, to_sun) = window.light();
         let landscape = window.landscape();
-        for draw in window.draws(|_, _| true) {
+        for draw in window.draws(|_, _, _| true) {
             assert_eq!(self.blocks[&draw.slot].block, draw.block);
             match (draw.level, landscape.mesh(draw.block, draw.ring)) {
                 (Level::Zero, Mesh::Level0) | (Level::One, Mesh::Level1) => {}
@@ -108,7 +108,7 @@ fn a_jump_off_the_map_and_back_recovers() {
         gpu.check(&window);
         assert_eq!(window.late_blocks(), 0);
     }
-    assert!(!window.draws(|_, _| true).is_empty());
+    assert!(!window.draws(|_, _, _| true).is_empty());
 }
 
 #[test]
@@ -143,7 +143,7 @@ fn light_flips_for_all_blocks_at_once() {
     assert_eq!(window.light().1, sun);
     let landscape = window.landscape().clone();
     let (layer, _) = window.light();
-    for draw in window.draws(|_, _| true) {
+    for draw in window.draws(|_, _, _| true) {
         let fresh = landscape.payload(draw.block, sun);
         assert_eq!(gpu.lights[layer][&draw.slot][..], fresh.light[..], "{:?}", draw.block);
     }
@@ -169,7 +169,7 @@ fn near_blocks_are_level_0() {
     let mut window = window(true);
     for frame in 0..100 {
         window.update(DVec2::new(150.0 * f64::from(frame), -70.0 * f64::from(frame)), 300.0);
-        for draw in window.draws(|_, _| true) {
+        for draw in window.draws(|_, _, _| true) {
             assert!(draw.ring <= window.settings().rings.ring_at(draw.distance_m));
             if draw.distance_m < window.settings().rings.radii_m[0] {
                 assert_eq!((draw.ring, draw.level), (0, Level::Zero));
