@@ -38,7 +38,7 @@ bench: release ## measure speed beside yardsticks
 	$(POLIGON) bench $(SUBJECT) $(ARGS)
 
 pictures: release ## take the pictures of the README anew
-	$(POLIGON) fly --headless --lockstep --quality fine --size 1280x720 --shots docs/pictures $(ARGS)
+	$(POLIGON) fly --headless --lockstep --quality fine --size 960x540 --frames 60 --shots docs/pictures $(ARGS)
 
 release: setup
 	$(CARGO) build --release --locked

@@ -1,8 +1,8 @@
 //! One ground: what is drawn near the eye is the ground of the queries, on the processor and on the device, and does not
 //! change while the eye moves; beyond, it keeps its limit.
 //!
-//! On made-up worlds at the extremes and, as it is baked already or quickly, on the embedded one. The device's part needs
-//! a Vulkan adapter, which may be software; without one it says so.
+//! On made-up worlds at the extremes; `poligon verify` proves the same of a real one. The device's part needs a Vulkan
+//! adapter, which may be software; without one it says so.
 
 use glam::{DVec2, DVec3};
 use rand::rngs::StdRng;
