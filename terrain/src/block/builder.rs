@@ -10,7 +10,7 @@ use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError, mpsc};
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What to make.
 #[allow(missing_docs, reason = "the fields say themselves what they are")]
@@ -46,7 +46,7 @@ pub struct Builder {
 struct Shared {
     queue: Mutex<Queue>,
     wake: Condvar,
-    /// Thread time spent making things, nanoseconds: sum and worst.
+    /// Wall time spent making things, nanoseconds: sum and worst.
     spent_ns: AtomicU64,
     worst_ns: AtomicU64,
     made: AtomicU64,
@@ -65,10 +65,19 @@ struct Queue {
 pub struct BuildCost {
     /// Things made.
     pub made: u64,
-    /// Mean time to make one, milliseconds.
+    /// Mean wall time to make one, milliseconds; on a busy machine more than the work itself.
     pub mean_ms: f64,
     /// Longest, milliseconds.
     pub max_ms: f64,
+}
+
+impl Job {
+    /// The block it is for.
+    pub fn block(&self) -> BlockIndex {
+        match *self {
+            Self::Payload { block, .. } | Self::Mesh { block, .. } | Self::Light { block, .. } => block,
+        }
+    }
 }
 
 impl Builder {
@@ -121,9 +130,18 @@ impl Builder {
         self.results.try_recv().ok()
     }
 
-    /// The next thing made; waits for it. `None` if no thread is left.
+    /// The next thing made; waits for it. `None` if a thread has ended, which only a fault in making things can do.
     pub fn wait(&self) -> Option<Built> {
-        self.results.recv().ok()
+        loop {
+            match self.results.recv_timeout(Duration::from_millis(200)) {
+                Ok(built) => return Some(built),
+                Err(mpsc::RecvTimeoutError::Disconnected) => return None,
+                Err(mpsc::RecvTimeoutError::Timeout) if self.threads.iter().any(JoinHandle::is_finished) => {
+                    return None;
+                }
+                Err(mpsc::RecvTimeoutError::Timeout) => {}
+            }
+        }
     }
 
     /// What building has cost.

@@ -168,11 +168,17 @@ fn site_at(sites: &[Site], u: f32, v: f32) -> Site {
     }
 }
 
-/// Stand-in shore distance of the sea: level ground at 0 m is water, half a cell around it is shore.
+/// Stand-in shore distance of the sea: level ground at 0 m is water, half a cell around it is shore. A sea floor below
+/// 0 m is drawn as the land that it is in the data.
 fn sea_m(field: &Field, first_column: i64, first_row: i64, u: f64, v: f64) -> f64 {
     let (column, row) = (first_column + u as i64, first_row + v as i64);
     let step_m = field.grid().step_m;
-    let wet = |dc: i64, dr: i64| if field.post_m(column + dc, row + dr).abs() < 0.5 { 1.0 } else { 0.0 };
+    let level = |c: i64, r: i64| field.post_m(c, r).abs() < 0.5;
+    let wet = |dc: i64, dr: i64| {
+        let (c, r) = (column + dc, row + dr);
+        let sea = level(c, r) && level(c - 1, r) && level(c + 1, r) && level(c, r - 1) && level(c, r + 1);
+        if sea { 1.0 } else { 0.0 }
+    };
     let (east, south) = (u.fract(), v.fract());
     let north = wet(0, 0) + east * (wet(1, 0) - wet(0, 0));
     let below = wet(0, 1) + east * (wet(1, 1) - wet(0, 1));

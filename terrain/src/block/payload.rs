@@ -5,7 +5,7 @@
 
 use super::ground_map::{self, Climate};
 use super::light;
-use super::mask::{Mask, block_posts};
+use super::mask::{BlockPosts, Mask, block_posts};
 use super::mesh::{self, Indices, TILE};
 use super::rings::RingMasks;
 use crate::features::lakes::Lakes;
@@ -66,11 +66,32 @@ pub struct Payload {
     pub radius_m: f64,
     /// Whether any texel is water.
     pub has_water: bool,
-    /// Whether any post is void.
-    pub has_void: bool,
+    /// Triangles at level 0: all that are not void.
+    pub ground_triangles: u32,
+}
+
+/// Triangles of level 0 without those that are void.
+fn ground_triangles(posts: &BlockPosts) -> u32 {
+    let list = if posts.iter().any(|h| h.is_nan()) {
+        mesh::indices(&Mask::all(), Some(posts)).len()
+    } else {
+        mesh::level_0().len()
+    };
+    list as u32 / 3
 }
 
 impl Mesh {
+    /// Fingerprint of the index list: FNV-1a by index; the shared lists are known by their level.
+    pub fn hash(&self) -> u64 {
+        match self {
+            Self::Level0 => 0,
+            Self::Level1 => 1,
+            Self::Own(list) => list.iter().fold(0xcbf2_9ce4_8422_2325, |hash, index| {
+                (hash ^ u64::from(*index)).wrapping_mul(0x0000_0100_0000_01b3)
+            }),
+        }
+    }
+
     /// The triangle list.
     pub fn indices(&self) -> &Indices {
         match self {
@@ -135,7 +156,7 @@ impl Landscape {
             centre_m,
             radius_m: 0.5 * DVec3::new(side, high - low, side).length(),
             has_water: ground_map[..ground_map::MAP_BYTES].chunks_exact(4).any(|texel| texel[3] > 127),
-            has_void: posts.iter().any(|h| h.is_nan()),
+            ground_triangles: ground_triangles(&posts),
             ground_map,
         }
     }

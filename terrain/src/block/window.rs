@@ -89,6 +89,10 @@ pub struct Resident {
     pub range: Range,
     /// Whether it has water.
     pub has_water: bool,
+    /// Triangles at level 0: all that are not void.
+    pub ground_triangles: u32,
+    /// Fingerprint of its index list.
+    list_hash: u64,
     /// Which light layers hold light for the sun of that layer.
     lit: [bool; 2],
 }
@@ -153,6 +157,10 @@ pub struct Window {
     jumping: bool,
     eye: DVec2,
     quiet: Option<Quiet>,
+    /// Light flips up to the start of this update.
+    quiet_flips: u64,
+    /// The newest sun, to be lit for when the relight under way is done.
+    next_sun: Option<DVec3>,
     counters: Counters,
 }
 
@@ -204,6 +212,8 @@ impl Window {
             jumping: false,
             eye: DVec2::ZERO,
             quiet: None,
+            quiet_flips: 0,
+            next_sun: None,
             counters: Counters::default(),
             landscape,
             settings,
@@ -263,23 +273,21 @@ impl Window {
 
     /// Towards the sun, unit, world frame. Light follows when it has turned by half a degree.
     pub fn set_sun(&mut self, to_sun: DVec3) {
-        let newest = if self.relighting { self.suns[1 - self.front] } else { self.suns[self.front] };
-        if !to_sun.is_finite() || to_sun.dot(newest) >= RELIGHT_COS {
+        if !to_sun.is_finite() || !self.started {
+            if to_sun.is_finite() {
+                self.suns = [to_sun; 2];
+            }
             return;
         }
-        if !self.started {
-            self.suns = [to_sun; 2];
-            return;
-        }
-        // A relight under way starts over: it would be late anyway.
-        let back = 1 - self.front;
-        self.suns[back] = to_sun;
-        self.relighting = true;
-        self.quiet = None;
-        self.lights.clear();
-        self.slots.iter_mut().flatten().for_each(|resident| resident.lit[back] = false);
-        for job in self.builder.withdraw(|job| matches!(job, Job::Light { .. })) {
-            self.asked.remove(&Asked::from(&job));
+        if self.relighting {
+            // A relight under way is finished first, or a fast clock would never see one.
+            self.next_sun = Some(to_sun);
+        } else if to_sun.dot(self.suns[self.front]) < RELIGHT_COS {
+            let back = 1 - self.front;
+            self.suns[back] = to_sun;
+            self.relighting = true;
+            self.quiet = None;
+            self.slots.iter_mut().flatten().for_each(|resident| resident.lit[back] = false);
         }
     }
 
@@ -294,6 +302,7 @@ impl Window {
             self.counters.upload_bytes = 0;
             return Vec::new();
         }
+        self.quiet_flips = self.counters.relights;
         self.follow();
         if !self.started {
             self.build_all();
@@ -384,16 +393,12 @@ impl Window {
         late
     }
 
-    /// Order-free fingerprint of what is drawn: blocks, slots, rings and levels.
+    /// Fingerprint of what is drawn, nearest first: blocks, slots, rings and index lists.
     pub fn mesh_hash(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325u64;
         for draw in self.draws(|_, _, _| true) {
-            let triangles = match draw.level {
-                Level::Zero => 1,
-                Level::One => 2,
-                Level::Own { indices } => 3 + u64::from(indices),
-            };
-            for word in [draw.slot as u64, draw.block.x as u64, draw.block.z as u64, draw.ring as u64, triangles] {
+            let list = self.slots[draw.slot].as_ref().map_or(0, |resident| resident.list_hash);
+            for word in [draw.slot as u64, draw.block.x as u64, draw.block.z as u64, draw.ring as u64, list] {
                 hash = (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
             }
         }
@@ -403,6 +408,7 @@ impl Window {
     /// Bytes of built things that wait for their upload.
     pub fn waiting_bytes(&self) -> usize {
         self.ready.values().map(|p| p.upload_bytes()).sum::<usize>()
+            + self.meshes.values().map(indices_bytes).sum::<usize>()
             + self.lights.values().map(|l| l.1.len()).sum::<usize>()
     }
 
@@ -497,9 +503,19 @@ impl Window {
     fn build_all(&mut self) {
         let blocks: Vec<BlockIndex> = self.wanted_blocks().collect();
         let (landscape, to_sun) = (&self.landscape, self.suns[self.front]);
-        let built: Vec<Arc<Payload>> =
-            blocks.par_iter().map(|block| Arc::new(landscape.payload(*block, to_sun))).collect();
-        self.ready.extend(built.into_iter().map(|payload| (payload.block, payload)));
+        let grid = landscape.ground.field().grid();
+        let ring =
+            |block: BlockIndex| self.settings.rings.ring_at(grid.distance_to_block_m(self.eye.x, self.eye.y, block));
+        let built: Vec<(Arc<Payload>, usize, Mesh)> = blocks
+            .par_iter()
+            .map(|block| {
+                (Arc::new(landscape.payload(*block, to_sun)), ring(*block), landscape.mesh(*block, ring(*block)))
+            })
+            .collect();
+        for (payload, ring, mesh) in built {
+            self.meshes.insert((payload.block, ring), mesh);
+            self.ready.insert(payload.block, payload);
+        }
     }
 
     /// Asks for all that is wanted and neither there, ready nor asked for; forgets what is no longer near.
@@ -516,7 +532,7 @@ impl Window {
         self.ready.retain(|block, _| near(*block));
         let to_sun = self.suns[self.front];
         let (slots, asked) = (&self.slots, &mut self.asked);
-        let gone = self.builder.withdraw(|job| matches!(job, Job::Payload { block, .. } if !near(*block)));
+        let gone = self.builder.withdraw(|job| !near(job.block()));
         gone.iter().for_each(|job| {
             asked.remove(&Asked::from(job));
         });
@@ -582,7 +598,9 @@ impl Window {
 
     /// How far the eye may go before any block wants another ring; `None` while anything is owed.
     fn settled(&self, speed_mps: f64) -> Option<Quiet> {
-        if !self.asked.is_empty() || self.shift.is_some() || self.jumping || self.relighting {
+        // A flip of the light in this very update has emptied what was built ahead.
+        let flipped = self.quiet_flips != self.counters.relights;
+        if flipped || !self.asked.is_empty() || self.shift.is_some() || self.jumping || self.relighting {
             return None;
         }
         let grid = self.landscape.ground.field().grid();
@@ -647,18 +665,23 @@ impl Window {
             let Some(block) = self.slots[slot].as_ref().map(|r| r.block) else { continue };
             let Some(mesh) = self.meshes.get(&(block, ring)) else { continue };
             let Some(level) = place(mesh, slot, uploads, left) else { continue };
+            let list_hash = mesh.hash();
             self.meshes.remove(&(block, ring));
             if let Some(resident) = &mut self.slots[slot] {
-                (resident.ring, resident.level) = (ring, level);
+                (resident.ring, resident.level, resident.list_hash) = (ring, level, list_hash);
                 self.counters.switches += 1;
             }
         }
         // Meshes for rings that their blocks have left again.
-        let (slots, n) = (&self.slots, self.n());
+        let (slots, n, rings, eye) = (&self.slots, self.n(), self.settings.rings, self.eye);
         let slot_of = |block: BlockIndex| (block.z.rem_euclid(n) * n + block.x.rem_euclid(n)) as usize;
         let ready = &self.ready;
-        self.meshes.retain(|(block, _), _| {
-            ready.contains_key(block) || slots[slot_of(*block)].as_ref().is_some_and(|r| r.block == *block)
+        self.meshes.retain(|(block, ring), _| {
+            ready.contains_key(block)
+                || slots[slot_of(*block)].as_ref().is_some_and(|resident| {
+                    let distance_m = grid.distance_to_block_m(eye.x, eye.y, *block);
+                    resident.block == *block && *ring == wanted_ring(&rings, resident.ring, distance_m, speed_mps)
+                })
         });
     }
 
@@ -691,10 +714,12 @@ impl Window {
             *left -= payload.upload_bytes();
             let mut lit = [false; 2];
             lit[self.front] = true;
-            let (range, has_water) = (payload.range, payload.has_water);
+            let (range, has_water, ground_triangles) = (payload.range, payload.has_water, payload.ground_triangles);
             uploads.push(Upload::Block { slot, layer: self.front, payload });
             let Some(level) = place(&mesh, slot, uploads, left) else { continue };
-            self.slots[slot] = Some(Resident { block, ring, level, range, has_water, lit });
+            let list_hash = mesh.hash();
+            self.slots[slot] =
+                Some(Resident { block, ring, level, range, has_water, ground_triangles, list_hash, lit });
         }
         let moving = self.jumping || self.shift.is_some();
         if moving && self.wanted_blocks().all(|block| self.slots[self.slot(block)].is_some()) {
@@ -752,6 +777,9 @@ impl Window {
             self.lights.clear();
             self.ready.clear();
             self.slots.iter_mut().flatten().for_each(|resident| resident.lit[1 - back] = false);
+            if let Some(to_sun) = self.next_sun.take() {
+                self.set_sun(to_sun);
+            }
         }
     }
 }

@@ -287,7 +287,8 @@ impl Terrain {
             }
             let range = self.textures.range(draw.slot, draw.level);
             counts.triangles += u64::from(range.end - range.start) / 3;
-            counts.triangles_all_level0 += u64::from(CELLS * CELLS * 2);
+            let resident = self.window.resident(draw.slot);
+            counts.triangles_all_level0 += resident.map_or(0, |resident| u64::from(resident.ground_triangles));
         }
         counts
     }

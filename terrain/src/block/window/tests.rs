@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::block::ground_map::Climate;
+use crate::block::light;
 use crate::block::rings::RingMasks;
 use crate::features::lakes::Lakes;
 use crate::{Grid, Ground, synthetic};
@@ -63,8 +64,9 @@ impl Gpu {
                 }
                 other => panic!("{draw:?} has {other:?}"),
             }
-            let _ = to_sun;
-            assert!(self.lights[layer].contains_key(&draw.slot));
+            let ground = &landscape.ground;
+            let fresh = light::light_map(ground.field(), ground.pyramid(), draw.block, to_sun);
+            assert_eq!(self.lights[layer][&draw.slot][..], fresh[..], "stale light in {:?}", draw.block);
         }
     }
 }
@@ -150,6 +152,24 @@ fn light_flips_for_all_blocks_at_once() {
     // Less than half a degree is left alone.
     window.set_sun((sun + DVec3::new(0.002, 0.0, 0.0)).normalize());
     assert!(!window.relighting);
+}
+
+#[test]
+fn light_stays_right_through_shifts_jumps_and_a_racing_sun() {
+    let mut window = window(true);
+    let mut gpu = Gpu::default();
+    for frame in 0..240 {
+        // A day in 240 frames, faster than one relight can follow.
+        let turn = f64::from(frame) / 240.0 * std::f64::consts::TAU;
+        window.set_sun(DVec3::new(turn.cos(), 0.4, turn.sin()).normalize());
+        let jump = if frame >= 120 { 30_000.0 } else { 0.0 };
+        gpu.apply(window.update(DVec2::new(-15_000.0 + jump + 60.0 * f64::from(frame), 50.0 * f64::from(frame)), 60.0));
+        if frame % 24 == 0 {
+            gpu.check(&window);
+        }
+    }
+    assert!(window.counters().relights >= 10, "{:?}", window.counters());
+    assert!(window.counters().shifts >= 2, "{:?}", window.counters());
 }
 
 #[test]
