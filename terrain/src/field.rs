@@ -115,10 +115,16 @@ impl Field {
 
     /// The heights of a rectangle, row by row; NaN outside the grid.
     pub fn read(&self, rect: PostRect) -> Vec<f32> {
-        let mut heights = Vec::with_capacity(rect.columns as usize * rect.rows as usize);
-        for row in rect.row..rect.row + rect.rows {
-            for column in rect.column..rect.column + rect.columns {
-                heights.push(self.post_m(i64::from(column), i64::from(row)));
+        let wide = rect.columns as usize;
+        let mut heights = vec![f32::NAN; wide * rect.rows as usize];
+        let columns = i64::from(self.grid.columns());
+        let first = rect.column.clamp(0, columns);
+        let last = (rect.column + i64::from(rect.columns)).clamp(first, columns);
+        for (row, line) in (rect.row..).zip(heights.chunks_exact_mut(wide.max(1))) {
+            if (0..i64::from(self.grid.rows())).contains(&row) && first < last {
+                let from = (row * columns + first) as usize;
+                let length = (last - first) as usize;
+                line[(first - rect.column) as usize..][..length].copy_from_slice(&self.heights_m[from..from + length]);
             }
         }
         heights
@@ -162,6 +168,19 @@ mod tests {
         let ne = field.position_m(Corner { column: 4, row: 4 });
         for triangle in [north_west, south_east] {
             assert!(triangle.corners.contains(&sw) && triangle.corners.contains(&ne));
+        }
+    }
+
+    #[test]
+    fn a_rectangle_is_its_posts_one_by_one_also_beyond_the_edge() {
+        let grid = Grid::centred(200.0, 1, 1).unwrap();
+        let field = Field::new(grid, (0..grid.posts()).map(|i| i as f32).collect()).unwrap();
+        for (column, row) in [(0, 0), (-3, -2), (25, 28), (200, 5), (-200, 5), (5, -90)] {
+            let rect = PostRect { column, row, columns: 9, rows: 7 };
+            for (at, height) in field.read(rect).into_iter().enumerate() {
+                let slow = field.post_m(column + at as i64 % 9, row + at as i64 / 9);
+                assert_eq!(height.to_bits(), slow.to_bits(), "{rect:?} at {at}");
+            }
         }
     }
 

@@ -42,13 +42,13 @@ pub struct BlockIndex {
     pub z: i32,
 }
 
-/// A rectangle of posts, `columns` x `rows` from (`column`, `row`).
+/// A rectangle of posts, `columns` x `rows` from (`column`, `row`); may reach beyond the grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PostRect {
     /// First column.
-    pub column: u32,
+    pub column: i64,
     /// First row.
-    pub row: u32,
+    pub row: i64,
     /// Posts from west to east.
     pub columns: u32,
     /// Posts from north to south.

@@ -10,7 +10,7 @@ use super::mesh::{self, Indices, TILE};
 use super::rings::RingMasks;
 use crate::features::lakes::Lakes;
 use crate::field::Field;
-use crate::grid::BlockIndex;
+use crate::grid::{BlockIndex, PostRect};
 use crate::ground::Ground;
 use crate::pyramid::Range;
 use glam::{DVec2, DVec3};
@@ -109,8 +109,8 @@ impl Mesh {
 
 /// The heights of a block's posts and apron, `TILE` x `TILE`, row by row; NaN is void or beyond the world.
 pub fn tile_heights_m(field: &Field, block: BlockIndex) -> Box<[f32]> {
-    let (first_column, first_row, tile) = (block.first_column(), block.first_row(), i64::from(TILE));
-    (0..tile * tile).map(|at| field.post_m(first_column + at % tile, first_row + at / tile)).collect()
+    let (column, row) = (block.first_column(), block.first_row());
+    field.read(PostRect { column, row, columns: TILE, rows: TILE }).into_boxed_slice()
 }
 
 impl Landscape {
