@@ -112,6 +112,10 @@ pub struct Draw {
     pub distance_m: f64,
     /// Least and greatest height.
     pub range: Range,
+    /// Whether it has water.
+    pub has_water: bool,
+    /// Triangles at level 0.
+    pub ground_triangles: u32,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -141,6 +145,8 @@ pub struct Window {
     settings: Settings,
     builder: Builder,
     slots: Vec<Option<Resident>>,
+    /// Ranges of height by slot, void where nothing is: all that culling reads, and small enough to stay near.
+    ranges: Vec<Range>,
     /// North-west block of the committed window.
     origin: BlockIndex,
     shift: Option<Shift>,
@@ -199,6 +205,7 @@ impl Window {
         Self {
             builder,
             slots: vec![None; (settings.blocks * settings.blocks) as usize],
+            ranges: vec![Range::VOID; (settings.blocks * settings.blocks) as usize],
             origin: BlockIndex { x: 0, z: 0 },
             shift: None,
             ready: HashMap::new(),
@@ -341,7 +348,7 @@ impl Window {
         let grid = self.landscape.ground.field().grid();
         let all = self.landscape.ground.pyramid().all();
         let n = self.n();
-        let mut draws = Vec::new();
+        let mut draws = Vec::with_capacity(self.slots.len() / 2);
         for (group_z, group_x) in (0..n).step_by(GROUP).flat_map(|z| (0..n).step_by(GROUP).map(move |x| (z, x))) {
             let corner = BlockIndex { x: self.origin.x + group_x, z: self.origin.z + group_z };
             if !visible(corner, GROUP as i32, all) {
@@ -349,16 +356,17 @@ impl Window {
             }
             for z in corner.z..(corner.z + GROUP as i32).min(self.origin.z + n) {
                 for x in corner.x..(corner.x + GROUP as i32).min(self.origin.x + n) {
-                    let slot = self.slot(BlockIndex { x, z });
-                    let Some(resident) = self.slots[slot]
-                        .as_ref()
-                        .filter(|r| self.is_shown(r.block) && !r.range.is_void() && visible(r.block, 1, r.range))
-                    else {
+                    let block = BlockIndex { x, z };
+                    let slot = self.slot(block);
+                    let range = self.ranges[slot];
+                    if range.is_void() || !self.is_shown(block) || !visible(block, 1, range) {
                         continue;
-                    };
-                    let Resident { block, level, ring, range, .. } = *resident;
+                    }
+                    // A slot may hold a block that is on its way in already.
+                    let Some(resident) = self.slots[slot].as_ref().filter(|r| r.block == block) else { continue };
+                    let Resident { level, ring, has_water, ground_triangles, .. } = *resident;
                     let distance_m = grid.distance_to_block_m(self.eye.x, self.eye.y, block);
-                    draws.push(Draw { slot, block, level, ring, distance_m, range });
+                    draws.push(Draw { slot, block, level, ring, distance_m, range, has_water, ground_triangles });
                 }
             }
         }
@@ -456,14 +464,7 @@ impl Window {
             self.origin = BlockIndex { x: eye.x.round() as i32 - half, z: eye.y.round() as i32 - half };
             self.shift = None;
             self.jumping = true;
-            let (origin, n) = (self.origin, self.n());
-            for slot in &mut self.slots {
-                if slot.as_ref().is_some_and(|r| {
-                    !(0..n).contains(&(r.block.x - origin.x)) || !(0..n).contains(&(r.block.z - origin.z))
-                }) {
-                    *slot = None;
-                }
-            }
+            self.forget_outside(self.origin);
             return;
         }
         if self.shift.is_some() || self.jumping {
@@ -487,14 +488,19 @@ impl Window {
         };
         if shift != (Shift { dx: 0, dz: 0 }) {
             self.shift = Some(shift);
-            let origin = self.target();
-            let n = self.n();
-            for slot in &mut self.slots {
-                if slot.as_ref().is_some_and(|r| {
-                    !(0..n).contains(&(r.block.x - origin.x)) || !(0..n).contains(&(r.block.z - origin.z))
-                }) {
-                    *slot = None;
-                }
+            self.forget_outside(self.target());
+        }
+    }
+
+    /// Empties the slots whose blocks are not in the window at `origin`.
+    fn forget_outside(&mut self, origin: BlockIndex) {
+        let n = self.n();
+        for (slot, range) in self.slots.iter_mut().zip(&mut self.ranges) {
+            if slot.as_ref().is_some_and(|resident| {
+                let (x, z) = (resident.block.x - origin.x, resident.block.z - origin.z);
+                !(0..n).contains(&x) || !(0..n).contains(&z)
+            }) {
+                (*slot, *range) = (None, Range::VOID);
             }
         }
     }
@@ -718,6 +724,7 @@ impl Window {
             uploads.push(Upload::Block { slot, layer: self.front, payload });
             let Some(level) = place(&mesh, slot, uploads, left) else { continue };
             let list_hash = mesh.hash();
+            self.ranges[slot] = range;
             self.slots[slot] =
                 Some(Resident { block, ring, level, range, has_water, ground_triangles, list_hash, lit });
         }

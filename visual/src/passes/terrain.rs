@@ -221,7 +221,7 @@ impl Terrain {
             frustum.may_see_box(low.as_vec3() - Vec3::splat(0.1), high.as_vec3() + Vec3::splat(0.1))
         });
         // Stable: each part stays nearest first.
-        draws.sort_by_key(|draw| self.kind(draw));
+        draws.sort_by_key(Self::kind);
         if view_index == 0 {
             self.counts = self.count(&draws);
             let ([column, row], eye_fraction_m) = eye_uniforms(&grid, view.eye_m);
@@ -259,7 +259,7 @@ impl Terrain {
         pass.set_index_buffer(self.textures.indices.slice(..), wgpu::IndexFormat::Uint16);
         let mut bound = None;
         for draw in self.draws(view_index) {
-            let kind = self.kind(draw);
+            let kind = Self::kind(draw);
             if bound != Some(kind) {
                 pass.set_pipeline(&self.pipelines[kind]);
                 bound = Some(kind);
@@ -270,11 +270,8 @@ impl Terrain {
     }
 
     /// Which pipeline draws a block: 0 near land, 1 far land, 2 with water.
-    fn kind(&self, draw: &Draw) -> usize {
-        match self.window.resident(draw.slot) {
-            Some(resident) if resident.has_water => 2,
-            _ => usize::from(draw.distance_m > DETAIL_REACH_M),
-        }
+    fn kind(draw: &Draw) -> usize {
+        if draw.has_water { 2 } else { usize::from(draw.distance_m > DETAIL_REACH_M) }
     }
 
     fn count(&self, draws: &[Draw]) -> DrawCounts {
@@ -287,8 +284,7 @@ impl Terrain {
             }
             let range = self.textures.range(draw.slot, draw.level);
             counts.triangles += u64::from(range.end - range.start) / 3;
-            let resident = self.window.resident(draw.slot);
-            counts.triangles_all_level0 += resident.map_or(0, |resident| u64::from(resident.ground_triangles));
+            counts.triangles_all_level0 += u64::from(draw.ground_triangles);
         }
         counts
     }
