@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use std::sync::Arc;
 use terrain::block::{Landscape, Rings};
 use terrain::verify::pop::Pop;
-use terrain::{Area, CELLS};
+use terrain::{Area, CELLS, Field};
 use visual::camera::View;
 use visual::proof::{Stage, depth, grey, heights};
 use visual::{Gpu, GpuError, Scene};
@@ -16,7 +16,7 @@ use visual::{Gpu, GpuError, Scene};
 const EYES: u64 = 16;
 
 /// Pixels compared in all.
-const PIXELS: u64 = 100_000;
+pub const PIXELS: u64 = 100_000;
 
 /// Switches whose grey is looked at: those that move most, and some spread over the track.
 const LARGEST: usize = 8;
@@ -37,6 +37,8 @@ pub struct Found {
     pub grey_worst_pixel: f64,
     /// Switches that were seen.
     pub grey_switches: u64,
+    /// Switches looked at: they move a surface of which a post is in sight.
+    pub switches_in_sight: u64,
 }
 
 /// A device, or `None`, having said why.
@@ -48,6 +50,28 @@ pub fn device() -> Option<Gpu> {
             None
         }
     }
+}
+
+/// Pixels that a proof must have compared to count as one: all where the world has at least a block's worth of ground.
+/// Less may show in too few pixels, so there one will do; over void alone there is nothing to compare.
+pub fn pixels_due(field: &Field) -> u64 {
+    let grid = field.grid();
+    let (columns, rows) = (i64::from(grid.columns()) - 1, i64::from(grid.rows()) - 1);
+    let sound = |column, row| !field.post_m(column, row).is_nan();
+    let triangles = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row))).map(|(column, row)| {
+        // Cut from south-west to north-east.
+        let cut = sound(column, row + 1) && sound(column + 1, row);
+        usize::from(cut && sound(column, row)) + usize::from(cut && sound(column + 1, row + 1))
+    });
+    let block = 2 * (CELLS * CELLS) as usize;
+    let mut found = 0;
+    for some in triangles {
+        found += some;
+        if found >= block {
+            return PIXELS;
+        }
+    }
+    found.min(1) as u64
 }
 
 /// What the proofs are made on.
@@ -71,6 +95,7 @@ pub fn prove(gpu: &Gpu, subject: &Subject, pops: &[Pop], told: &dyn Fn(f64)) -> 
     near(gpu, subject, &mut found, told)?;
     let mut stage = stage(gpu, subject, [1080, 1080])?;
     let chosen = chosen(&subject.landscape.ground.whole(), pops);
+    found.switches_in_sight = chosen.len() as u64;
     for (number, pop) in chosen.iter().enumerate() {
         told(0.4 + 0.6 * number as f64 / chosen.len() as f64);
         let view = grey::view_of(&stage, pop.switch.block, pop.eye_m);
@@ -103,7 +128,7 @@ fn near(gpu: &Gpu, subject: &Subject, found: &mut Found, told: &dyn Fn(f64)) -> 
         told(0.4 * found.depths.pixels_checked as f64 / PIXELS as f64);
         let at =
             DVec2::new(rng.random_range(grid.west_m..grid.east_m()), rng.random_range(grid.north_m..grid.south_m()));
-        let Some(ground_m) = area.height_m(at.x, at.y) else { continue };
+        let Some((at, ground_m)) = ground_after(&area, at) else { break };
         // 2 m to 6 km, evenly by ratio.
         let above_m = 2.0 * 3_000f64.powf(rng.random_range(0.0..1.0));
         let elevation_rad = if eye % EYES == 0 { -std::f64::consts::FRAC_PI_2 } else { rng.random_range(-1.3..0.1) };
@@ -128,6 +153,23 @@ fn near(gpu: &Gpu, subject: &Subject, found: &mut Found, told: &dyn Fn(f64)) -> 
         found.depths = found.depths.and(depths);
     }
     Ok(())
+}
+
+/// The first place with ground from here on, east along its row of cells and then through the rows, and its height;
+/// `None` where there is none in the world.
+fn ground_after(area: &Area, at: DVec2) -> Option<(DVec2, f64)> {
+    let grid = area.grid();
+    let here = std::iter::once(at);
+    let (columns, rows) = (u64::from(grid.columns()) - 1, u64::from(grid.rows()) - 1);
+    let first = ((at.y - grid.north_m) / grid.step_m) as u64 * columns + ((at.x - grid.west_m) / grid.step_m) as u64;
+    let cells = (first..first + columns * rows).map(|cell| (cell % columns, cell / columns % rows));
+    // A place in each triangle of a cell: north-west and south-east of the cut.
+    let inside = cells.flat_map(|(column, row)| {
+        [0.25, 0.75].map(|share| {
+            DVec2::new(grid.west_m, grid.north_m) + (DVec2::new(column as f64, row as f64) + share) * grid.step_m
+        })
+    });
+    here.chain(inside).find_map(|at| Some((at, area.height_m(at.x, at.y)?)))
 }
 
 /// Which switches to look at, in the order of the track: of blocks that the eye sees.
@@ -158,4 +200,33 @@ fn is_seen(area: &Area, pop: &Pop) -> bool {
             height_m.is_finite() && area.segment(pop.eye_m, post).is_none()
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use terrain::{Grid, Ground, synthetic};
+
+    #[test]
+    fn a_proof_is_owed_by_what_ground_there_is() {
+        let grid = Grid::centred(200.0, 3, 2).unwrap();
+        let field = |sound: &dyn Fn(u32, u32) -> bool| {
+            synthetic::from_fn(grid, |column, row| if sound(column, row) { 7.0 } else { f32::NAN })
+        };
+        for (name, field, due) in [
+            ("ground", field(&|_, _| true), PIXELS),
+            ("a block", field(&|c, r| c <= 30 && r <= 30), PIXELS),
+            ("a cell less", field(&|c, r| c <= 30 && r <= 30 && (c, r) != (0, 0)), 1),
+            // The south-east triangle of one cell, seen from the world's other end.
+            ("a triangle", field(&|c, r| [(40, 21), (41, 20), (41, 21)].contains(&(c, r))), 1),
+            ("posts alone", field(&|c, r| c % 2 == 0 && r % 2 == 0), 0),
+            ("void", field(&|_, _| false), 0),
+        ] {
+            assert_eq!(pixels_due(&field), due, "{name}");
+            let area = Ground::new(Arc::new(field)).whole();
+            let from = DVec2::new(grid.east_m() - 1.0, grid.south_m() - 1.0);
+            let found = ground_after(&area, from);
+            assert_eq!(found.map(|(_, height_m)| height_m), (due > 0).then_some(7.0), "{name}: {found:?}");
+        }
+    }
 }

@@ -117,9 +117,9 @@ pub struct Terrain {
     pub draw_calls: u32,
     /// The render thread's own time on a processor, for a frame's terrain.
     pub update_cpu_ms: UpdateCpuMs,
-    /// A builder's time on a processor, for a block.
+    /// A builder's wall time for a thing made: a block's payload, a mesh or its light.
     pub build_cpu_ms: BuildCpuMs,
-    /// Sent to the adapter.
+    /// Sent to the adapter: block textures and index lists.
     pub upload_bytes: UploadBytes,
     /// Held for terrain.
     pub memory_bytes: MemoryBytes,
@@ -140,19 +140,19 @@ pub struct UpdateCpuMs {
     pub max: f64,
 }
 
-/// A builder's time for a block.
+/// A builder's wall time for a thing made: on a busy machine it includes waiting for a processor.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct BuildCpuMs {
-    /// Over all blocks.
+    /// Over all things made.
     pub mean: f64,
     /// The longest.
     pub max: f64,
 }
 
-/// Bytes sent to the adapter for terrain.
+/// Bytes sent to the adapter for blocks: textures and index lists, not the table of blocks, uniforms, sky or HUD.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct UploadBytes {
-    /// Most in a frame, once the window was full.
+    /// Most in a frame, without the filling after a start or a jump.
     pub max_frame: u64,
     /// All.
     pub total: u64,
@@ -161,13 +161,14 @@ pub struct UploadBytes {
 /// Bytes held for terrain.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct MemoryBytes {
-    /// The world's posts.
+    /// The world's posts, f32.
     pub posts: u64,
     /// The pyramid of least and greatest heights.
     pub pyramid: u64,
-    /// Blocks in the processor's memory.
+    /// In the processor's memory: masks of all rings, and built textures that wait for their upload.
     pub payload_cpu: u64,
-    /// Blocks in the adapter's memory.
+    /// In the adapter's memory: the window's textures and index lists, the detail texture, the table of blocks and the
+    /// ground's uniforms.
     pub payload_gpu: u64,
 }
 

@@ -115,7 +115,7 @@ fn a_switch_of_ring_moves_less_than_a_pixel() {
     let worst = pops.iter().map(|pop| pop.px).fold(0.0, f64::max);
     assert!(pops.len() > 100 && worst > 0.1 && worst <= 1.0, "{} switches, {worst} px", pops.len());
     for pop in &pops {
-        // Finer a margin early, coarser two margins late: never inside the radius of its coarser ring.
+        // Finer 60 m and 0.2 s of flight early, coarser 60 m behind that: never inside the radius of its coarser ring.
         assert!(pop.switch.distance_m > rings.radii_m[pop.switch.from.max(pop.switch.to) - 1], "{pop:?}");
     }
 }

@@ -4,7 +4,7 @@ use crate::args::VerifyArgs;
 use crate::failure::Failure;
 use crate::gpu_proof::{self, Subject};
 use crate::open_world;
-use crate::output::Output;
+use crate::output::{self, Output};
 use crate::progress::Progress;
 use crate::report;
 use crate::scenery;
@@ -68,15 +68,24 @@ pub fn run(args: &VerifyArgs, output: Output) -> Result<(), Failure> {
         };
     }
     let pops = flights(&landscape, &rings, &mut report);
-    picture(&world, landscape, rings, &pops, &mut report)?;
+    let due = picture(&world, landscape, rings, &pops, &mut report)?;
 
     output.print(&report)?;
-    let broken = broken(&report);
+    let broken = broken(&report, due);
     if broken.is_empty() { Ok(()) } else { Err(Failure::Failed(format!("not proven: {}", broken.join("; ")))) }
 }
 
+/// How much the proofs on a device must have looked at: one that looked at nothing proves nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Due {
+    /// Pixels of depth; 0 over void alone.
+    pixels: u64,
+    /// Whether a switch moved a surface in sight.
+    switch: bool,
+}
+
 /// What was promised and does not hold, in words.
-fn broken(report: &report::Verify) -> Vec<String> {
+fn broken(report: &report::Verify, due: Due) -> Vec<String> {
     let mut broken = Vec::new();
     let mut promise = |holds: bool, sentence: String| {
         if !holds {
@@ -111,6 +120,18 @@ fn broken(report: &report::Verify) -> Vec<String> {
         format!("expected the near surface to be the ground, found {} m between them", near.max_difference_m),
     );
     if let Some(gpu) = &report.gpu {
+        promise(
+            gpu.pixels_checked >= due.pixels,
+            format!("expected at least {} pixels compared with the ground, found {}", due.pixels, gpu.pixels_checked),
+        );
+        promise(
+            gpu.vertices_checked > 0 || due.pixels == 0,
+            "expected vertices on the device to compare, found none".to_owned(),
+        );
+        promise(
+            report.pop.grey_switches > Some(0) || !due.switch,
+            "expected a switch in sight to show in the picture, found none that does".to_owned(),
+        );
         promise(
             gpu.height_mismatches == 0 && gpu.position_mismatches == 0,
             format!(
@@ -278,15 +299,15 @@ fn highest(landscape: &Landscape) -> Option<DVec2> {
     Some(DVec2::new(grid.x_m((at % columns) as i64), grid.z_m((at / columns) as i64)))
 }
 
-/// The proofs on a device, where there is one.
+/// The proofs on a device, where there is one, and what they must have looked at.
 fn picture(
     world: &World,
     landscape: Arc<Landscape>,
     rings: Rings,
     pops: &[Pop],
     report: &mut report::Verify,
-) -> Result<(), Failure> {
-    let Some(gpu) = gpu_proof::device() else { return Ok(()) };
+) -> Result<Due, Failure> {
+    let Some(gpu) = gpu_proof::device() else { return Ok(Due::default()) };
     let scene = Scene {
         sun_direction: scenery::to_sun(world, scenery::default_moment(world))?,
         visibility_m: f64::MAX,
@@ -309,5 +330,36 @@ fn picture(
         pixels_outside: found.depths.pixels_outside,
         pixels_excluded: found.depths.pixels_excluded,
     });
-    Ok(())
+    let due = Due { pixels: gpu_proof::pixels_due(&world.field), switch: found.switches_in_sight > 0 };
+    if found.depths.pixels_checked < gpu_proof::PIXELS && due.pixels < gpu_proof::PIXELS {
+        output::tell(format_args!(
+            "poligon: the world has less than a block of ground: {} pixels were compared with it, not {}",
+            found.depths.pixels_checked,
+            gpu_proof::PIXELS
+        ));
+    }
+    Ok(due)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_proof_that_looked_at_nothing_is_none() {
+        let seen = report::Gpu { vertices_checked: 1, pixels_checked: 10, ..report::Gpu::default() };
+        let pop = report::Pop { grey_switches: Some(1), ..report::Pop::default() };
+        let whole = report::Verify { gpu: Some(seen), pop, ..report::Verify::default() };
+        let due = Due { pixels: 10, switch: true };
+        assert_eq!(broken(&whole, due), [""; 0]);
+        let blind = report::Verify { gpu: Some(report::Gpu::default()), ..report::Verify::default() };
+        let words = broken(&blind, due);
+        assert!(
+            words.len() == 3 && words[0].contains("at least 10 pixels") && words[0].ends_with("found 0"),
+            "{words:?}"
+        );
+        // Over void, and without an adapter, there is nothing to look at.
+        assert_eq!(broken(&blind, Due::default()), [""; 0]);
+        assert_eq!(broken(&report::Verify::default(), due), [""; 0]);
+    }
 }
