@@ -136,7 +136,12 @@ impl<'a> Cockpit<'a> {
         match call {
             Call::Ready { gpu, format, size_px, .. } => self.ready(gpu, format, size_px)?,
             Call::Event(event) => return Ok(self.event(event)),
-            Call::Frame { gpu, target, size_px } => return Ok(self.frame(gpu, target, size_px)?),
+            Call::Frame { gpu, target, size_px, slept } => {
+                if slept {
+                    self.last_frame = None;
+                }
+                return Ok(self.frame(gpu, target, size_px)?);
+            }
         }
         Ok(Flow::Continue)
     }
