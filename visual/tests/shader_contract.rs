@@ -3,10 +3,19 @@
 //! All on the processor, with the shader compiler that the renderer itself uses.
 
 use std::mem::offset_of;
+use terrain::block::window::MAX_BLOCKS;
 use visual::passes::lines::Segment;
+use visual::passes::terrain::{BlockEntry, WindowUniforms};
 use visual::shaders;
 use visual::uniforms::FrameUniforms;
 use wgpu::naga;
+
+/// Name and offset of every field of a host struct, as [`layout`] gives those of the shader's.
+macro_rules! host {
+    ($mirror:ident: $($field:ident),* $(,)?) => {
+        vec![$((stringify!($field).to_owned(), offset_of!($mirror, $field) as u32)),*]
+    };
+}
 
 fn parsed(name: &str) -> naga::Module {
     let source = shaders::joined(name);
@@ -86,12 +95,8 @@ fn every_shader_parses_and_validates() {
 
 #[test]
 fn frame_uniforms_are_the_same_on_both_sides() {
-    macro_rules! host {
-        ($($field:ident),* $(,)?) => {
-            vec![$((stringify!($field).to_owned(), offset_of!(FrameUniforms, $field) as u32)),*]
-        };
-    }
     let host = host![
+        FrameUniforms:
         clip_from_relative,
         eye_high_m,
         eye_altitude_m,
@@ -125,6 +130,35 @@ fn frame_uniforms_are_the_same_on_both_sides() {
             assert_eq!(span as usize, size_of::<FrameUniforms>(), "{name}");
         }
     }
+}
+
+#[test]
+fn the_windows_uniforms_and_table_of_blocks_are_the_same_on_both_sides() {
+    let window = host![WindowUniforms: eye_post, eye_fraction_m, step_m, light_texel, map_texel, light_layer];
+    let block = host![BlockEntry: first_post, level, side];
+    let mut seen = 0;
+    for (name, source) in shaders::SOURCES {
+        if !source.contains("shared/posts.wgsl") {
+            continue;
+        }
+        seen += 1;
+        let module = parsed(name);
+        let (shader, span) = layout(&module, "WindowUniforms");
+        assert_eq!((shader, span as usize), (window.clone(), size_of::<WindowUniforms>()), "{name}");
+        let (shader, span) = layout(&module, "Block");
+        assert_eq!((shader, span as usize), (block.clone(), size_of::<BlockEntry>()), "{name}");
+
+        let table = module.global_variables.iter().find(|(_, global)| global.name.as_deref() == Some("blocks"));
+        let (_, table) = table.expect("a table of blocks");
+        let naga::TypeInner::Array { size: naga::ArraySize::Constant(length), stride, .. } =
+            module.types[table.ty].inner
+        else {
+            panic!("{name}: expected an array of fixed length, found {:?}", module.types[table.ty].inner);
+        };
+        assert_eq!(length.get(), MAX_BLOCKS * MAX_BLOCKS, "{name}");
+        assert_eq!(stride as usize, size_of::<BlockEntry>(), "{name}");
+    }
+    assert_eq!(seen, 2, "terrain.wgsl and heights.wgsl place posts");
 }
 
 #[test]
