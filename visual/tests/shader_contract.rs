@@ -61,6 +61,11 @@ fn in_block(module: &naga::Module, function: &naga::Function, block: &naga::Bloc
                 add((count, looped && count > 0));
             }
             S::Block(inner) => add(in_block(module, function, inner, looped)),
+            // A branch that a constant closes costs nothing.
+            S::If { condition, accept, reject } if closed(function, *condition).is_some() => {
+                let taken = if closed(function, *condition) == Some(true) { accept } else { reject };
+                add(in_block(module, function, taken, looped));
+            }
             S::If { accept, reject, .. } => {
                 // Both sides count: a software rasteriser runs both.
                 add(in_block(module, function, accept, looped));
@@ -83,6 +88,14 @@ fn in_block(module: &naga::Module, function: &naga::Function, block: &naga::Bloc
         }
     }
     total
+}
+
+/// What a condition is, where the compiler knows it.
+fn closed(function: &naga::Function, condition: naga::Handle<naga::Expression>) -> Option<bool> {
+    match function.expressions[condition] {
+        naga::Expression::Literal(naga::Literal::Bool(is)) => Some(is),
+        _ => None,
+    }
 }
 
 #[test]
@@ -189,6 +202,22 @@ fn fragments_read_few_textures_and_none_in_a_loop() {
                 _ => usize::MAX,
             };
             assert!(count <= most && !in_loop, "{name} {}: {count} reads, in a loop: {in_loop}", entry.name);
+        }
+    }
+}
+
+#[test]
+fn each_scale_of_detail_costs_the_ground_one_read_and_without_there_are_two() {
+    const FREE: &str = "override DETAIL: u32 = 2u;";
+    let source = shaders::joined("terrain.wgsl");
+    assert!(source.contains(FREE), "expected \"{FREE}\" in terrain.wgsl");
+    // Water has one scale of ripples.
+    for (detail, land, water) in [(0, 2, 2), (1, 3, 3), (2, 4, 3)] {
+        let fixed = source.replace(FREE, &format!("const DETAIL: u32 = {detail}u;"));
+        let module = naga::front::wgsl::parse_str(&fixed).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&fixed)));
+        for (name, most) in [("terrain_fragment", land), ("water_fragment", water)] {
+            let entry = module.entry_points.iter().find(|entry| entry.name == name).expect(name);
+            assert_eq!(samples(&module, entry), (most, false), "{name} at detail {detail}");
         }
     }
 }
