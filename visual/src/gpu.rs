@@ -191,6 +191,11 @@ impl Gpu {
         Err(GpuError::Size { asked_px: size_px, largest_px })
     }
 
+    /// Whether edges of triangles can be drawn alone: the wireframe.
+    pub fn draws_edges(&self) -> bool {
+        self.device.features().contains(wgpu::Features::POLYGON_MODE_LINE)
+    }
+
     /// Waits until all submitted work is done.
     ///
     /// # Errors
