@@ -133,7 +133,11 @@ fn water_fragment(surface: WaterSurface) -> @location(0) vec4<f32> {
     // The shore line between texels, about as wide as a pixel.
     let wet = smoothstep(0.49, 0.51, map.a);
     let ripple_at = surface.local.xy * (60.0 / f32(TILE - 2u)) + vec2<f32>(frame.time_s * 0.004, frame.time_s * 0.0027);
-    let near = textureSample(detail_texture, detail_sampler, ripple_at);
+    // Without detail: no ripple, and ground as bright as its map.
+    var near = vec4<f32>(0.5);
+    if DETAIL > 0u {
+        near = textureSample(detail_texture, detail_sampler, ripple_at);
+    }
     let ground = lit(map.rgb * map.rgb * mix(0.55 + 0.9 * near.b, 1.0, wet), light, (near.rg - 0.5) * 0.3 * (1.0 - wet));
 
     let distance_m = length(surface.relative_m);

@@ -58,7 +58,7 @@ pub struct ViewArgs {
     /// Date and time, such as 2026-06-21T09:30:00Z or 2026-06-21T15:30+06:00 [default: the world's].
     #[arg(long, value_name = "ISO", value_parser = UtcTime::parse)]
     pub time: Option<UtcTime>,
-    /// How far one sees, metres; no farther than the window reaches.
+    /// How far one sees, 100 to 1,000,000 metres; no farther than the window reaches.
     #[arg(long, value_name = "V", value_parser = values::visibility_m, allow_hyphen_values = true)]
     pub visibility_m: Option<f64>,
     /// Blocks along a side of the far ring: 12 or 24 [default: the preset's].
@@ -70,7 +70,7 @@ pub struct ViewArgs {
     /// Settings that belong together [default: what fits the adapter].
     #[arg(long, value_name = "P")]
     pub quality: Option<Quality>,
-    /// Pixels drawn for a pixel shown, along a side [default: the preset's].
+    /// Pixels drawn for a pixel shown, along a side, 0.25 to 1 [default: the preset's].
     #[arg(long, value_name = "S", value_parser = values::render_scale, allow_hyphen_values = true)]
     pub render_scale: Option<f64>,
     /// Samples a pixel: 1 or 4 [default: the preset's].

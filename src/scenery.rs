@@ -6,10 +6,11 @@
 use crate::args::ViewArgs;
 use crate::failure::Failure;
 use crate::open_world;
+use crate::output;
 use crate::values::{Overlay, Quality};
 use glam::{DQuat, DVec2, DVec3};
 use sim::UtcTime;
-use std::sync::Arc;
+use std::sync::{Arc, Once};
 use terrain::block::Rings;
 use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
 use terrain::store::World;
@@ -123,6 +124,7 @@ pub struct Scenery {
 impl Scenery {
     /// Prepares a world for pictures into targets of a colour format.
     pub fn new(gpu: Gpu, format: visual::TextureFormat, world: Arc<World>, look: Look) -> Self {
+        tell_of_missing_edges(&gpu, look.ground);
         let rings = look.rings(&world);
         let landscape = open_world::landscape(&world, &rings);
         let area = landscape.ground.whole();
@@ -169,6 +171,7 @@ impl Scenery {
 
     /// Changes how the ground is drawn.
     pub fn set_ground_look(&mut self, ground: TerrainLook) {
+        tell_of_missing_edges(&self.gpu, ground);
         self.look.ground = ground;
         self.terrain.set_look(&self.gpu, self.renderer.frame_layout(), ground);
     }
@@ -208,6 +211,19 @@ impl Scenery {
         let frame = Frame { scene, views: vec![*view], hud };
         let terrain = &self.terrain;
         self.renderer.render(&self.gpu, &frame, &[target], |about, pass| terrain.draw(about.index, pass))
+    }
+}
+
+/// Says once a run that a wireframe is asked of an adapter that draws none.
+fn tell_of_missing_edges(gpu: &Gpu, ground: TerrainLook) {
+    static TOLD: Once = Once::new();
+    if ground.wireframe && !gpu.draws_edges() {
+        TOLD.call_once(|| {
+            output::tell(format_args!(
+                "poligon: no wireframe: adapter \"{}\" cannot draw edges alone (POLYGON_MODE_LINE)",
+                gpu.report.name
+            ));
+        });
     }
 }
 

@@ -266,17 +266,17 @@ pub fn fov_y_deg(text: &str) -> Result<f64, Refused> {
 /// How far one sees.
 ///
 /// # Errors
-/// [`Refused`] if it is not within 10 m..=1,000 km.
+/// [`Refused`] if it is not within 100 m..=1,000 km.
 pub fn visibility_m(text: &str) -> Result<f64, Refused> {
-    number(text, "a visibility in metres", 10.0..=1_000_000.0)
+    number(text, "a visibility in metres", 100.0..=1_000_000.0)
 }
 
 /// Pixels drawn for a pixel shown, along a side.
 ///
 /// # Errors
-/// [`Refused`] if it is not within 0.1..=2.
+/// [`Refused`] if it is not within 0.25..=1.
 pub fn render_scale(text: &str) -> Result<f64, Refused> {
-    number(text, "a scale", 0.1..=2.0)
+    number(text, "a scale", 0.25..=1.0)
 }
 
 /// Frames a second to hold.
@@ -380,8 +380,8 @@ mod tests {
             (heading_deg, ["-360", "360"], ["-360.1", "360.1"]),
             (speed_mps, ["0", "10000"], ["-0.1", "10000.1"]),
             (fov_y_deg, ["1", "150"], ["0.99", "180"]),
-            (visibility_m, ["10", "1e6"], ["9", "1000001"]),
-            (render_scale, ["0.1", "2"], ["0", "2.1"]),
+            (visibility_m, ["100", "1e6"], ["99", "1000001"]),
+            (render_scale, ["0.25", "1"], ["0.24", "1.01"]),
             (pace_hz, ["1", "1000"], ["0", "1001"]),
             (seconds, ["0.01", "86400"], ["0", "86401"]),
             (step_m, ["25", "400"], ["24.9", "400.1"]),

@@ -34,6 +34,8 @@ pub enum Message {
     Controls(Controls),
     /// A discrete command.
     Command(Command),
+    /// Stops time or lets it run, whichever it was.
+    Paused(bool),
     /// Date and time of day.
     Date(UtcTime),
     /// How fast the date runs against the simulation.
@@ -174,6 +176,7 @@ fn drive(
             match message {
                 Message::Controls(controls) => scene.set_controls(controls),
                 Message::Command(command) => scene.command(command),
+                Message::Paused(paused) => scene.clock.set_paused(paused),
                 Message::Date(date) => scene.clock.set_date(date),
                 Message::DayRate(rate) => scene.clock.set_day_rate(rate),
                 Message::Place(state) => scene.place(*state),

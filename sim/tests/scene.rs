@@ -190,8 +190,15 @@ fn the_thread_keeps_wall_time_publishes_and_hands_the_scene_back() {
     assert!(paused.flags.paused);
     std::thread::sleep(Duration::from_millis(100));
     assert_eq!(thread.last_two().1.step, paused.step);
+    // Said twice is not taken back, as the command would be.
+    assert!(thread.send(Message::Paused(true)));
+    std::thread::sleep(Duration::from_millis(200));
+    assert_eq!(thread.last_two().1.step, paused.step);
+    assert!(thread.send(Message::Paused(false)) && thread.send(Message::Paused(false)));
+    std::thread::sleep(Duration::from_millis(300));
+    assert!(thread.last_two().1.step > paused.step);
     let scene = thread.stop().unwrap();
-    assert_eq!(scene.snapshot().step, paused.step);
+    assert!(scene.snapshot().step > paused.step);
 }
 
 #[test]

@@ -18,7 +18,7 @@ use crate::scenery::{self, Look, Scenery};
 use crate::stage::{self, Captions, Sun};
 use sim::input::Head;
 use sim::run::Message;
-use sim::{Command, SimThread};
+use sim::SimThread;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use terrain::store::World;
@@ -75,7 +75,7 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
             record.add_holes(found);
         }
         if record.frames() == 1 {
-            sim.send(Message::Command(Command::Pause));
+            sim.send(Message::Paused(false));
             begun = Instant::now();
         }
         let share = match length {

@@ -13,6 +13,7 @@ use crate::report::{self, Fly};
 use crate::scenery::{self, Look, Scenery};
 use crate::stage::{self, Captions, Sun};
 use sim::input::joystick::Joystick;
+use sim::input::keyboard::Keyboard;
 use sim::input::{Head, Input};
 use sim::run::Message;
 use sim::{Command, Controls, Mode, SimThread, Snapshot};
@@ -84,8 +85,8 @@ struct Cockpit<'a> {
     record: Record,
     last_frame: Option<Instant>,
     frame_ms: f64,
-    /// An input and the controls before it, until a picture shows others.
-    awaited: Option<(Instant, Controls)>,
+    /// The press of an axis key, its axis and where that stood, until a picture shows it elsewhere.
+    awaited: Option<(Instant, fn(&Controls) -> f64, f64)>,
     /// An input whose picture is on its way to the screen.
     shown: Option<Instant>,
     picture_wanted: bool,
@@ -136,7 +137,12 @@ impl<'a> Cockpit<'a> {
         match call {
             Call::Ready { gpu, format, size_px, .. } => self.ready(gpu, format, size_px)?,
             Call::Event(event) => return Ok(self.event(event)),
-            Call::Frame { gpu, target, size_px } => return Ok(self.frame(gpu, target, size_px)?),
+            Call::Frame { gpu, target, size_px, slept } => {
+                if slept {
+                    self.last_frame = None;
+                }
+                return Ok(self.frame(gpu, target, size_px)?);
+            }
         }
         Ok(Flow::Continue)
     }
@@ -173,8 +179,9 @@ impl<'a> Cockpit<'a> {
         match event {
             Event::CloseRequested => return Flow::Close,
             Event::Key { name, down, repeat: false } => {
-                if down && let Some(flown) = &self.flown {
-                    self.awaited.get_or_insert((Instant::now(), flown.sim.last_two().1.controls));
+                // The latest axis key is the one whose picture is waited for; other keys move no controls.
+                if down && let (Some(axis), Some(flown)) = (Keyboard::axis(&name), &self.flown) {
+                    self.awaited = Some((Instant::now(), axis, axis(&flown.sim.last_two().1.controls)));
                 }
                 if let Some(command) = self.input.keyboard.key(&name, down) {
                     return self.command(command);
@@ -256,8 +263,8 @@ impl<'a> Cockpit<'a> {
         };
         let picture = self.picture_wanted.then(|| hud.clone());
         scenery.draw(&view, to_sun, snapshot.time_s, hud, target).map_err(super::device_failed)?;
-        if let Some((since, before)) = self.awaited {
-            if snapshot.controls != before {
+        if let Some((since, axis, before)) = self.awaited {
+            if axis(&snapshot.controls) != before {
                 self.shown = Some(since);
             }
             if self.shown.is_some() || since.elapsed() > NO_EFFECT {
@@ -267,7 +274,7 @@ impl<'a> Cockpit<'a> {
         if self.record.frames() == 0 {
             // The first picture counts when it is there, and time runs from then.
             gpu.wait().map_err(super::device_failed)?;
-            flown.sim.send(Message::Command(Command::Pause));
+            flown.sim.send(Message::Paused(false));
             flown.begun = Some(Instant::now());
         }
         self.record.frame(scenery, &view, &snapshot, None);

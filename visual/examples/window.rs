@@ -32,7 +32,7 @@ fn main() -> Result<(), window::WindowError> {
                     _ => {}
                 }
             }
-            Call::Frame { gpu, target, size_px } => {
+            Call::Frame { gpu, target, size_px, .. } => {
                 frames += 1;
                 size = size_px;
                 let mean_ms = start.elapsed().as_secs_f64() * 1e3 / f64::from(frames);

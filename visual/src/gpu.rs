@@ -168,7 +168,7 @@ impl Gpu {
         Ok(Self { device, queue, adapter, report, trouble })
     }
 
-    /// The first error since the device was opened, if any. Call once a frame; after an error open a new device.
+    /// The first error since the device was opened, if any; a loss comes before refused calls. Call once a frame; after an error open a new device.
     ///
     /// # Errors
     /// [`GpuError::Lost`], [`GpuError::Refused`].
@@ -191,15 +191,19 @@ impl Gpu {
         Err(GpuError::Size { asked_px: size_px, largest_px })
     }
 
+    /// Whether edges of triangles can be drawn alone: the wireframe.
+    pub fn draws_edges(&self) -> bool {
+        self.device.features().contains(wgpu::Features::POLYGON_MODE_LINE)
+    }
+
     /// Waits until all submitted work is done.
     ///
     /// # Errors
     /// [`GpuError::Lost`] where the device does not answer.
     pub fn wait(&self) -> Result<(), GpuError> {
-        self.device
-            .poll(wgpu::PollType::wait_indefinitely())
-            .map(|_| ())
-            .map_err(|error| GpuError::Lost(error.to_string()))?;
+        if let Err(error) = self.device.poll(wgpu::PollType::wait_indefinitely()) {
+            keep_first(&self.trouble, GpuError::Lost(error.to_string()));
+        }
         self.check()
     }
 }
@@ -221,8 +225,33 @@ fn preference(kind: wgpu::DeviceType) -> u8 {
     }
 }
 
+/// Keeps the first error, but a loss before a refused call: calls are refused because a device is going, and only a
+/// loss is answered with a new one.
 fn keep_first(kept: &Mutex<Option<GpuError>>, error: GpuError) {
     if let Ok(mut kept) = kept.lock() {
-        kept.get_or_insert(error);
+        match (&*kept, &error) {
+            (None, _) | (Some(GpuError::Refused(_)), GpuError::Lost(_)) => *kept = Some(error),
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_error_is_kept_but_a_loss_before_a_refusal() {
+        let kept_of = |errors: &[GpuError]| {
+            let kept = Mutex::new(None);
+            errors.iter().for_each(|error| keep_first(&kept, error.clone()));
+            kept.into_inner().unwrap().map(|error| error.to_string())
+        };
+        let (lost, refused) = (|text: &str| GpuError::Lost(text.into()), |text: &str| GpuError::Refused(text.into()));
+        let shown = |error: GpuError| Some(error.to_string());
+        assert_eq!(kept_of(&[]), None);
+        assert_eq!(kept_of(&[refused("a"), refused("b")]), shown(refused("a")));
+        assert_eq!(kept_of(&[refused("a"), lost("b"), lost("c")]), shown(lost("b")));
+        assert_eq!(kept_of(&[lost("a"), refused("b")]), shown(lost("a")));
     }
 }

@@ -88,6 +88,8 @@ pub enum Call<'a> {
         target: &'a wgpu::TextureView,
         /// Its size, pixels.
         size_px: [u32; 2],
+        /// The window was minimised or covered since the last frame: the time since then is no frame's.
+        slept: bool,
     },
 }
 
@@ -139,7 +141,7 @@ pub fn run(title: &str, size_px: [u32; 2], callback: impl FnMut(Call<'_>) -> Ans
         )
     })?;
     let mut shell =
-        Shell { title: title.to_owned(), size_px, callback, open: None, losses: 0, asleep: false, failed: None };
+        Shell { title: title.to_owned(), size_px, callback, open: None, losses: 0, covered: false, asleep: false, slept: false, failed: None };
     let ended = event_loop.run_app(&mut shell);
     match (shell.failed, ended) {
         (Some(error), _) => Err(error),
@@ -154,7 +156,12 @@ struct Shell<F> {
     callback: F,
     open: Option<Open>,
     losses: u32,
+    /// What the window system last said; only [`WindowEvent::Occluded`] sets it.
+    covered: bool,
+    /// No frame is asked for until the window is looked at again.
     asleep: bool,
+    /// Minimised or covered at some time since the last frame.
+    slept: bool,
     failed: Option<WindowError>,
 }
 
@@ -319,8 +326,9 @@ impl<F: FnMut(Call<'_>) -> Answer> Shell<F> {
 
     fn draw(&mut self, event_loop: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
-        self.asleep = !open.is_shown();
+        self.asleep = self.covered || !open.is_shown();
         if self.asleep {
+            self.slept = true;
             return;
         }
         let image = match open.next_image() {
@@ -338,7 +346,8 @@ impl<F: FnMut(Call<'_>) -> Answer> Shell<F> {
         });
         // The image's own size: right after a resize it can differ from the window's.
         let size_px = [image.texture.width(), image.texture.height()];
-        let answer = (self.callback)(Call::Frame { gpu: &open.gpu, target: &target, size_px });
+        let slept = std::mem::take(&mut self.slept);
+        let answer = (self.callback)(Call::Frame { gpu: &open.gpu, target: &target, size_px, slept });
         open.window.pre_present_notify();
         open.gpu.queue.present(image);
         match open.gpu.check() {
@@ -369,7 +378,7 @@ impl<F: FnMut(Call<'_>) -> Answer> ApplicationHandler for Shell<F> {
                 let Some(open) = &mut self.open else { return };
                 open.resize(size);
                 if open.is_shown() {
-                    self.asleep = false;
+                    self.asleep = self.covered;
                     let size_px = open.size_px();
                     self.tell(event_loop, Event::Resized { size_px });
                 }
@@ -377,7 +386,11 @@ impl<F: FnMut(Call<'_>) -> Answer> ApplicationHandler for Shell<F> {
             WindowEvent::ScaleFactorChanged { scale_factor, .. } => {
                 self.tell(event_loop, Event::ScaleFactor(scale_factor));
             }
-            WindowEvent::Occluded(covered) => self.asleep = covered,
+            WindowEvent::Occluded(covered) => {
+                self.covered = covered;
+                self.asleep = covered || !self.open.as_ref().is_some_and(Open::is_shown);
+                self.slept |= covered;
+            }
             WindowEvent::Focused(focused) => self.tell(event_loop, Event::Focused(focused)),
             WindowEvent::CloseRequested => self.tell(event_loop, Event::CloseRequested),
             WindowEvent::KeyboardInput { event, .. } => {

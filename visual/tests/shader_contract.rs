@@ -3,10 +3,19 @@
 //! All on the processor, with the shader compiler that the renderer itself uses.
 
 use std::mem::offset_of;
+use terrain::block::window::MAX_BLOCKS;
 use visual::passes::lines::Segment;
+use visual::passes::terrain::{BlockEntry, WindowUniforms};
 use visual::shaders;
 use visual::uniforms::FrameUniforms;
 use wgpu::naga;
+
+/// Name and offset of every field of a host struct, as [`layout`] gives those of the shader's.
+macro_rules! host {
+    ($mirror:ident: $($field:ident),* $(,)?) => {
+        vec![$((stringify!($field).to_owned(), offset_of!($mirror, $field) as u32)),*]
+    };
+}
 
 fn parsed(name: &str) -> naga::Module {
     let source = shaders::joined(name);
@@ -52,6 +61,11 @@ fn in_block(module: &naga::Module, function: &naga::Function, block: &naga::Bloc
                 add((count, looped && count > 0));
             }
             S::Block(inner) => add(in_block(module, function, inner, looped)),
+            // A branch that a constant closes costs nothing.
+            S::If { condition, accept, reject } if closed(function, *condition).is_some() => {
+                let taken = if closed(function, *condition) == Some(true) { accept } else { reject };
+                add(in_block(module, function, taken, looped));
+            }
             S::If { accept, reject, .. } => {
                 // Both sides count: a software rasteriser runs both.
                 add(in_block(module, function, accept, looped));
@@ -76,6 +90,14 @@ fn in_block(module: &naga::Module, function: &naga::Function, block: &naga::Bloc
     total
 }
 
+/// What a condition is, where the compiler knows it.
+fn closed(function: &naga::Function, condition: naga::Handle<naga::Expression>) -> Option<bool> {
+    match function.expressions[condition] {
+        naga::Expression::Literal(naga::Literal::Bool(is)) => Some(is),
+        _ => None,
+    }
+}
+
 #[test]
 fn every_shader_parses_and_validates() {
     for (name, _) in shaders::SOURCES {
@@ -86,12 +108,8 @@ fn every_shader_parses_and_validates() {
 
 #[test]
 fn frame_uniforms_are_the_same_on_both_sides() {
-    macro_rules! host {
-        ($($field:ident),* $(,)?) => {
-            vec![$((stringify!($field).to_owned(), offset_of!(FrameUniforms, $field) as u32)),*]
-        };
-    }
     let host = host![
+        FrameUniforms:
         clip_from_relative,
         eye_high_m,
         eye_altitude_m,
@@ -128,6 +146,35 @@ fn frame_uniforms_are_the_same_on_both_sides() {
 }
 
 #[test]
+fn the_windows_uniforms_and_table_of_blocks_are_the_same_on_both_sides() {
+    let window = host![WindowUniforms: eye_post, eye_fraction_m, step_m, light_texel, map_texel, light_layer];
+    let block = host![BlockEntry: first_post, level, side];
+    let mut seen = 0;
+    for (name, source) in shaders::SOURCES {
+        if !source.contains("shared/posts.wgsl") {
+            continue;
+        }
+        seen += 1;
+        let module = parsed(name);
+        let (shader, span) = layout(&module, "WindowUniforms");
+        assert_eq!((shader, span as usize), (window.clone(), size_of::<WindowUniforms>()), "{name}");
+        let (shader, span) = layout(&module, "Block");
+        assert_eq!((shader, span as usize), (block.clone(), size_of::<BlockEntry>()), "{name}");
+
+        let table = module.global_variables.iter().find(|(_, global)| global.name.as_deref() == Some("blocks"));
+        let (_, table) = table.expect("a table of blocks");
+        let naga::TypeInner::Array { size: naga::ArraySize::Constant(length), stride, .. } =
+            module.types[table.ty].inner
+        else {
+            panic!("{name}: expected an array of fixed length, found {:?}", module.types[table.ty].inner);
+        };
+        assert_eq!(length.get(), MAX_BLOCKS * MAX_BLOCKS, "{name}");
+        assert_eq!(stride as usize, size_of::<BlockEntry>(), "{name}");
+    }
+    assert_eq!(seen, 2, "terrain.wgsl and heights.wgsl place posts");
+}
+
+#[test]
 fn line_segments_are_tightly_packed_in_the_order_of_their_locations() {
     let offsets = [
         offset_of!(Segment, ends_px),
@@ -155,6 +202,22 @@ fn fragments_read_few_textures_and_none_in_a_loop() {
                 _ => usize::MAX,
             };
             assert!(count <= most && !in_loop, "{name} {}: {count} reads, in a loop: {in_loop}", entry.name);
+        }
+    }
+}
+
+#[test]
+fn each_scale_of_detail_costs_the_ground_one_read_and_without_there_are_two() {
+    const FREE: &str = "override DETAIL: u32 = 2u;";
+    let source = shaders::joined("terrain.wgsl");
+    assert!(source.contains(FREE), "expected \"{FREE}\" in terrain.wgsl");
+    // Water has one scale of ripples.
+    for (detail, land, water) in [(0, 2, 2), (1, 3, 3), (2, 4, 3)] {
+        let fixed = source.replace(FREE, &format!("const DETAIL: u32 = {detail}u;"));
+        let module = naga::front::wgsl::parse_str(&fixed).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&fixed)));
+        for (name, most) in [("terrain_fragment", land), ("water_fragment", water)] {
+            let entry = module.entry_points.iter().find(|entry| entry.name == name).expect(name);
+            assert_eq!(samples(&module, entry), (most, false), "{name} at detail {detail}");
         }
     }
 }

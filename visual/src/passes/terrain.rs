@@ -400,7 +400,7 @@ fn pipelines(
         bind_group_layouts: &[Some(frame), Some(window)],
         immediate_size: 0,
     });
-    let lines = look.wireframe && device.features().contains(wgpu::Features::POLYGON_MODE_LINE);
+    let lines = look.wireframe && gpu.draws_edges();
     let make = |vertex, fragment, detail: u32| {
         let constants =
             [("TILE", f64::from(TILE)), ("DETAIL", f64::from(detail)), ("OVERLAY", f64::from(u8::from(look.overlay)))];
