@@ -165,7 +165,7 @@ pub struct MemoryBytes {
     pub posts: u64,
     /// The pyramid of least and greatest heights.
     pub pyramid: u64,
-    /// In the processor's memory: masks of all rings, and built textures that wait for their upload.
+    /// In the processor's memory: masks of all rings, and built textures and index lists that wait for their upload.
     pub payload_cpu: u64,
     /// In the adapter's memory: the window's textures and index lists, the detail texture, the table of blocks and the
     /// ground's uniforms.
