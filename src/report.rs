@@ -62,7 +62,7 @@ pub struct Adapter {
     pub name: String,
     /// `vulkan` and so on.
     pub backend: String,
-    /// `discrete`, `integrated`, `virtual`, `cpu` or `other`.
+    /// `hardware`, a graphics chip, or `software`, the processor.
     pub kind: String,
 }
 

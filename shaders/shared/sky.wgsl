@@ -1,5 +1,5 @@
 // shared/sky.wgsl: sky radiance and haze, for the vertex or the fragment stage.
-// Needs: shared/frame.wgsl. Twin: visual/src/uniforms.rs haze_transmittance, visual/src/sky.rs (the table).
+// Needs: shared/frame.wgsl. Twin: visual/src/uniforms.rs haze_from_eye, visual/src/sky.rs (the table).
 
 const TABLE_WIDTH: f32 = 128.0;
 const TABLE_HEIGHT: f32 = 64.0;
@@ -29,19 +29,8 @@ fn mean_density(eye: f32, eye_density: f32, point: f32) -> f32 {
     return select(slant, even, abs(rise) < 0.01);
 }
 
-// Share of a point's light that reaches the eye through `distance_m` of air; heights above sea level.
-// On the level at the haze base it is 2 % at the visibility.
-fn haze_transmittance(distance_m: f32, eye_height_m: f32, point_height_m: f32) -> f32 {
-    let eye_haze = clamp((eye_height_m - frame.haze_base_m) / HAZE_SCALE_HEIGHT_M, 0.0, 60.0);
-    let point_haze = clamp((point_height_m - frame.haze_base_m) / HAZE_SCALE_HEIGHT_M, 0.0, 60.0);
-    let eye_molecules = clamp(eye_height_m / MOLECULE_SCALE_HEIGHT_M, 0.0, 60.0);
-    let point_molecules = clamp(point_height_m / MOLECULE_SCALE_HEIGHT_M, 0.0, 60.0);
-    let haze = frame.haze_per_m * mean_density(eye_haze, exp(-eye_haze), point_haze);
-    let molecules = frame.molecules_per_m * mean_density(eye_molecules, exp(-eye_molecules), point_molecules);
-    return exp(-distance_m * (haze + molecules));
-}
-
-// The same from the frame's own eye, cheaper, and with the fade at the end of the ground: 0 from fade_end_m on.
+// Share of a point's light that reaches the eye through the air between, with the fade at the end of the ground: 0 from
+// fade_end_m on. On the level at the haze base it is 2 % at the visibility.
 fn haze_from_eye(relative_m: vec3<f32>) -> f32 {
     let point_height_m = frame.eye_altitude_m + relative_m.y;
     let eye_haze = clamp((frame.eye_altitude_m - frame.haze_base_m) / HAZE_SCALE_HEIGHT_M, 0.0, 60.0);

@@ -85,13 +85,21 @@ struct Cockpit<'a> {
     record: Record,
     last_frame: Option<Instant>,
     frame_ms: f64,
-    /// The press of an axis key, its axis and where that stood, until a picture shows it elsewhere.
-    awaited: Option<(Instant, fn(&Controls) -> f64, f64)>,
+    /// Until a picture shows it.
+    awaited: Option<Awaited>,
     /// An input whose picture is on its way to the screen.
     shown: Option<Instant>,
     picture_wanted: bool,
     pictures: Vec<PathBuf>,
     message: Option<(String, Instant)>,
+}
+
+/// The press of an axis key.
+struct Awaited {
+    since: Instant,
+    axis: fn(&Controls) -> f64,
+    /// Where the axis stood.
+    before: f64,
 }
 
 /// What begins with the first device.
@@ -181,7 +189,8 @@ impl<'a> Cockpit<'a> {
             Event::Key { name, down, repeat: false } => {
                 // The latest axis key is the one whose picture is waited for; other keys move no controls.
                 if down && let (Some(axis), Some(flown)) = (Keyboard::axis(&name), &self.flown) {
-                    self.awaited = Some((Instant::now(), axis, axis(&flown.sim.last_two().1.controls)));
+                    let before = axis(&flown.sim.last_two().1.controls);
+                    self.awaited = Some(Awaited { since: Instant::now(), axis, before });
                 }
                 if let Some(command) = self.input.keyboard.key(&name, down) {
                     return self.command(command);
@@ -263,7 +272,7 @@ impl<'a> Cockpit<'a> {
         };
         let picture = self.picture_wanted.then(|| hud.clone());
         scenery.draw(&view, to_sun, snapshot.time_s, hud, target).map_err(super::device_failed)?;
-        if let Some((since, axis, before)) = self.awaited {
+        if let Some(Awaited { since, axis, before }) = self.awaited {
             if axis(&snapshot.controls) != before {
                 self.shown = Some(since);
             }

@@ -10,6 +10,7 @@ use glam::DVec3;
 use std::sync::Arc;
 use terrain::store::World;
 use visual::capture::{self, Offscreen, Picture};
+use visual::proof::grey::luma;
 use visual::{Gpu, GpuError};
 
 /// One value of a knob on stage.
@@ -83,7 +84,7 @@ impl Actor {
         let mut spread = Spread::default();
         for (ours, theirs) in self.pictures.iter().zip(reference) {
             for (a, b) in ours.rgba.chunks_exact(4).zip(theirs.rgba.chunks_exact(4)) {
-                spread.add(grey(a) - grey(b));
+                spread.add(luma(a) - luma(b));
             }
         }
         spread.rms()
@@ -115,22 +116,6 @@ pub fn play(actors: &mut [Actor], cameras: &[Camera], to_sun: DVec3, effort: &Ef
     Ok(())
 }
 
-/// Grey as displayed: Rec. 709 weights on the coded values.
-fn grey(rgba: &[u8]) -> f64 {
-    0.2126 * f64::from(rgba[0]) + 0.7152 * f64::from(rgba[1]) + 0.0722 * f64::from(rgba[2])
-}
-
 fn drawing(error: GpuError) -> Failure {
     Failure::while_doing("measuring a setting", error)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn white_is_255_and_green_is_most_of_it() {
-        assert!((grey(&[255, 255, 255, 0]) - 255.0).abs() < 1e-9);
-        assert!(grey(&[0, 255, 0, 0]) > 0.7 * 255.0);
-    }
 }

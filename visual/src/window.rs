@@ -140,8 +140,17 @@ pub fn run(title: &str, size_px: [u32; 2], callback: impl FnMut(Call<'_>) -> Ans
             text.rsplit(".rs:").next().unwrap_or(&text).trim_start_matches(|c: char| !c.is_alphabetic()).to_owned(),
         )
     })?;
-    let mut shell =
-        Shell { title: title.to_owned(), size_px, callback, open: None, losses: 0, covered: false, asleep: false, slept: false, failed: None };
+    let mut shell = Shell {
+        title: title.to_owned(),
+        size_px,
+        callback,
+        open: None,
+        losses: 0,
+        covered: false,
+        asleep: false,
+        slept: false,
+        failed: None,
+    };
     let ended = event_loop.run_app(&mut shell);
     match (shell.failed, ended) {
         (Some(error), _) => Err(error),

@@ -102,7 +102,18 @@ pub fn change(
     Ok(found)
 }
 
-/// Rec. 709 weights on coded values.
-fn luma(rgba: &[u8]) -> f64 {
+/// Luma of a pixel as displayed, 0 to 255: Rec. 709 weights on the coded values of red, green and blue.
+pub fn luma(rgba: &[u8]) -> f64 {
     0.2126 * f64::from(rgba[0]) + 0.7152 * f64::from(rgba[1]) + 0.0722 * f64::from(rgba[2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn white_is_255_and_green_is_most_of_it() {
+        assert!((luma(&[255, 255, 255, 0]) - 255.0).abs() < 1e-9);
+        assert!(luma(&[0, 255, 0, 0]) > 0.7 * 255.0);
+    }
 }
