@@ -22,6 +22,10 @@ pub const PIXELS: u64 = 100_000;
 const LARGEST: usize = 8;
 const SPREAD: usize = 16;
 
+/// Surface pixels from which on a block shows as a patch: 16 x 16, not quite a degree. Of a block behind a crest a sliver
+/// may show in which every pixel is next to an outline; its mean is told apart.
+const PATCH_PIXELS: u64 = 256;
+
 /// What was found.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Found {
@@ -101,7 +105,9 @@ pub fn prove(gpu: &Gpu, subject: &Subject, pops: &[Pop], told: &dyn Fn(f64)) -> 
         let view = grey::view_of(&stage, pop.switch.block, pop.eye_m);
         let change = grey::change(&mut stage, &view, pop.switch.block, pop.switch.from, pop.switch.to)?;
         found.grey_switches += u64::from(change.pixels > 0);
-        found.grey = found.grey.max(change.mean);
+        if change.pixels >= PATCH_PIXELS {
+            found.grey = found.grey.max(change.mean);
+        }
         found.grey_any = found.grey_any.max(change.mean_any);
         found.grey_worst_pixel = found.grey_worst_pixel.max(change.worst);
     }
