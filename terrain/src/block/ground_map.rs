@@ -306,7 +306,7 @@ fn value_noise(x: f64, z: f64, seed: u32) -> f32 {
 }
 
 /// A number in 0..1 of a lattice point (the finaliser of MurmurHash3, public domain, A. Appleby).
-pub(crate) fn unit(x: i32, z: i32, seed: u32) -> f32 {
+pub fn unit(x: i32, z: i32, seed: u32) -> f32 {
     let mut h =
         (x as u32).wrapping_mul(0x9E37_79B1) ^ (z as u32).wrapping_mul(0x85EB_CA77) ^ seed.wrapping_mul(0xC2B2_AE3D);
     h ^= h >> 16;

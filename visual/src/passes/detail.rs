@@ -4,6 +4,8 @@
 //! green a surface slope (0.5 is level), blue and alpha two shades (mean 0.5). Every mip is the mean
 //! of the one below, a little fainter, so with distance the slope fades to level and the shades to grey: no shimmer, no fade to tune.
 
+use terrain::block::ground_map::unit;
+
 /// Contrast that a mip keeps of the one below it beyond plain averaging: what is far enough to show the repetition is
 /// faded out before it does.
 const KEPT: f32 = 0.7;
@@ -73,20 +75,9 @@ fn lattice(x: f32, y: f32, cells: usize, seed: u32) -> f32 {
     let (x0, y0) = (x.floor() as usize, y.floor() as usize);
     let ease = |t: f32| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
     let (u, v) = (ease(x.fract()), ease(y.fract()));
-    let at = |dx: usize, dy: usize| unit(((x0 + dx) % cells) as u32, ((y0 + dy) % cells) as u32, seed);
+    let at = |dx: usize, dy: usize| unit(((x0 + dx) % cells) as i32, ((y0 + dy) % cells) as i32, seed);
     let (top, bottom) = (at(0, 0) + u * (at(1, 0) - at(0, 0)), at(0, 1) + u * (at(1, 1) - at(0, 1)));
     top + v * (bottom - top)
-}
-
-/// A number in 0..1 of a lattice point (the finaliser of MurmurHash3, public domain, A. Appleby).
-fn unit(x: u32, y: u32, seed: u32) -> f32 {
-    let mut h = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ seed.wrapping_mul(0xC2B2_AE3D);
-    h ^= h >> 16;
-    h = h.wrapping_mul(0x85EB_CA6B);
-    h ^= h >> 13;
-    h = h.wrapping_mul(0xC2B2_AE35);
-    h ^= h >> 16;
-    (h >> 8) as f32 / (1u32 << 24) as f32
 }
 
 #[cfg(test)]
