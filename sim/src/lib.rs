@@ -14,11 +14,13 @@ pub mod frame;
 pub mod ground_contact;
 pub mod input;
 pub mod integrate;
+pub mod planet;
 pub mod run;
 pub mod slew;
 pub mod snapshot;
 pub mod track;
 pub mod utc;
+pub mod wind;
 pub mod world;
 
 pub use aircraft::{AircraftState, Condition};

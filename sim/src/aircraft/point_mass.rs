@@ -82,7 +82,7 @@ impl PointMass {
             state.rates_radps.x,
             state.load_factor,
         ];
-        let y = rk4(&y, dt_s, |y| self.rates(y, &controls, air));
+        let y = rk4(0.0, &y, dt_s, |_, y| self.rates(y, &controls, air));
         let speed_mps = y[3].clamp(0.0, MAX_SPEED_MPS);
         let path = DQuat::from_xyzw(y[4], y[5], y[6], y[7]).normalize();
         let alpha_rad = self.alpha_rad(y[9], speed_mps, air);
