@@ -304,7 +304,8 @@ mod tests {
                 assert!((ours.pressure_pa / theirs.pressure_pa - 1.0).abs() < 1e-13, "{height_m}");
             }
         }
-        let hot = Station { altitude_m: 1_607.0, temperature_k: Some(308.15), pressure_pa: Some(84_000.0), humidity: 0.5 };
+        let hot =
+            Station { altitude_m: 1_607.0, temperature_k: Some(308.15), pressure_pa: Some(84_000.0), humidity: 0.5 };
         let air = Layers::through(&hot).at(1_607.0);
         assert!((air.temperature_k - 308.15).abs() < 1e-9 && (air.pressure_pa - 84_000.0).abs() < 1e-7);
         assert!(air.density_kgpm3 < 84_000.0 / (GAS_JPKGK * 308.15));

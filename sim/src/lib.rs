@@ -9,7 +9,9 @@
 
 pub mod aircraft;
 pub mod atmosphere;
+pub mod case;
 pub mod clock;
+pub mod file;
 pub mod frame;
 pub mod ground_contact;
 pub mod input;

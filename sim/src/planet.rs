@@ -208,9 +208,7 @@ impl Planet {
                 wrapped_rad(place.lon_rad - origin.lon_rad) * radius_m * origin.lat_rad.cos(),
                 -place.altitude_m,
             ),
-            Shape::Round { radius_m } => {
-                DVec3::new(cos * cos_lon, cos * sin_lon, sin) * (radius_m + place.altitude_m)
-            }
+            Shape::Round { radius_m } => DVec3::new(cos * cos_lon, cos * sin_lon, sin) * (radius_m + place.altitude_m),
             Shape::Ellipsoid => {
                 let e2 = WGS84.f * (2.0 - WGS84.f);
                 let across = WGS84.a_m / (1.0 - e2 * sin * sin).sqrt();

@@ -34,7 +34,8 @@ impl Wind {
     /// # Errors
     /// [`NotRising`] names the first row that is not above the one before.
     pub fn new(rows: Vec<(f64, DVec3)>) -> Result<Self, NotRising> {
-        let falls = rows.windows(2).position(|pair| pair[0].0.partial_cmp(&pair[1].0) != Some(std::cmp::Ordering::Less));
+        let falls =
+            rows.windows(2).position(|pair| pair[0].0.partial_cmp(&pair[1].0) != Some(std::cmp::Ordering::Less));
         match falls {
             Some(at) => Err(NotRising { row: at + 1, before_m: rows[at].0, found_m: rows[at + 1].0 }),
             None => Ok(Self { rows }),
