@@ -10,6 +10,7 @@
 pub mod aircraft;
 pub mod atmosphere;
 pub mod clock;
+pub mod daveml;
 pub mod frame;
 pub mod ground_contact;
 pub mod input;
@@ -17,6 +18,7 @@ pub mod integrate;
 pub mod run;
 pub mod slew;
 pub mod snapshot;
+pub mod table;
 pub mod track;
 pub mod utc;
 pub mod world;
