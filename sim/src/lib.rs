@@ -9,6 +9,7 @@
 
 pub mod aircraft;
 pub mod atmosphere;
+pub mod ballistics;
 pub mod case;
 pub mod clock;
 pub mod daveml;
