@@ -80,7 +80,8 @@ impl Document {
     ) -> Result<(Vec<usize>, Vec<f64>), DavemlError> {
         let (mut indices, mut factors) = (Vec::new(), Vec::new());
         for signal in signals {
-            let index = self.find(&signal.name).map_err(|error| match error {
+            let by_id = if signal.is_id { self.find_id(&signal.name) } else { None };
+            let index = by_id.map_or_else(|| self.find(&signal.name), Ok).map_err(|error| match error {
                 DavemlError::Unknown { kind, name, .. } => {
                     DavemlError::Unknown { place: signal.place.clone(), kind, name }
                 }

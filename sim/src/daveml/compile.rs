@@ -55,7 +55,8 @@ impl Document {
             }
         }
         let needed = self.needed(outputs);
-        let mut compiler = Compiler { document: self, values: vec![Operand::constant(0.0); needed.len()], steps: Steps::default() };
+        let mut compiler =
+            Compiler { document: self, values: vec![Operand::constant(0.0); needed.len()], steps: Steps::default() };
         for &index in self.order.iter().filter(|&&index| needed[index]) {
             let value = match &self.definitions[index] {
                 Definition::Given => given.get(&index).copied().unwrap_or_else(|| {

@@ -91,6 +91,12 @@ impl Document {
             variables[index].kind = Kind::Calculated;
             definitions[index] = Definition::Function(function);
         }
+        // What nothing in the document gives a value to can only come from outside; one model forgets to say so.
+        for (variable, definition) in variables.iter_mut().zip(&definitions) {
+            if variable.initial.is_none() && *definition == Definition::Given {
+                variable.kind = Kind::Input;
+            }
+        }
         let order = order(&variables, &definitions)?;
         Ok(Self { variables, definitions, tables: tables.tables, shots, order, names })
     }
@@ -108,6 +114,10 @@ impl Document {
     /// There is none, or there are several.
     pub fn variable(&self, name: &str) -> Result<&Variable, DavemlError> {
         self.find(name).map(|index| &self.variables[index])
+    }
+
+    pub(super) fn find_id(&self, id: &str) -> Option<usize> {
+        self.names.ids.get(id).copied()
     }
 
     pub(super) fn find(&self, name: &str) -> Result<usize, DavemlError> {

@@ -87,7 +87,9 @@ fn number(element: &Element<'_, '_>) -> Result<Expression, DavemlError> {
         Some("e-notation") => {
             let parts = element.texts();
             let joined = parts.iter().map(|part| part.trim()).filter(|part| !part.is_empty()).collect::<Vec<_>>();
-            return Ok(Expression::Number(xml::number(&joined.join("e")).ok_or_else(|| element.no_number(&joined.join(" ")))?));
+            return Ok(Expression::Number(
+                xml::number(&joined.join("e")).ok_or_else(|| element.no_number(&joined.join(" ")))?,
+            ));
         }
         Some(kind) => return Err(element.unsupported_what(format!("<cn type=\"{kind}\">"))),
     }

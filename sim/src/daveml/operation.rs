@@ -137,8 +137,20 @@ impl Binary {
             Self::Power => x.powf(y),
             Self::Atan2 => x.atan2(y),
             // `f64::min` would hide a NaN.
-            Self::Least => if x < y || x.is_nan() { x } else { y },
-            Self::Greatest => if x > y || x.is_nan() { x } else { y },
+            Self::Least => {
+                if x < y || x.is_nan() {
+                    x
+                } else {
+                    y
+                }
+            }
+            Self::Greatest => {
+                if x > y || x.is_nan() {
+                    x
+                } else {
+                    y
+                }
+            }
             Self::Less => truth(x < y),
             Self::Greater => truth(x > y),
             Self::LessOrEqual => truth(x <= y),

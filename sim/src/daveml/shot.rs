@@ -21,6 +21,8 @@ pub struct ShotData {
 pub struct SignalData {
     /// Name or varID.
     pub name: String,
+    /// Whether it is said to be a varID.
+    pub is_id: bool,
     /// Units of value and tolerance, if they are said.
     pub units: Option<String>,
     /// The value.
@@ -78,13 +80,14 @@ fn read_signal(element: &Element<'_, '_>) -> Result<SignalData, DavemlError> {
         let text = child.text();
         xml::number(&text).ok_or_else(|| child.no_number(&text))
     };
-    let name = match (text("signalName")?, text("varID")?, text("signalID")?) {
-        (_, Some(id), _) | (_, None, Some(id)) => id,
-        (Some(name), None, None) => name,
+    let (name, is_id) = match (text("signalName")?, text("varID")?, text("signalID")?) {
+        (_, Some(id), _) | (_, None, Some(id)) => (id, true),
+        (Some(name), None, None) => (name, false),
         (None, None, None) => return Err(element.expected("signalName or varID in <signal>")),
     };
     Ok(SignalData {
         name,
+        is_id,
         units: text("signalUnits")?,
         value: number(&element.required("signalValue")?)?,
         tolerance: element.child("tol")?.map(|child| number(&child)).transpose()?,

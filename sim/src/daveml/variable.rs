@@ -8,7 +8,8 @@ use std::collections::HashMap;
 /// Where a variable's value comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// From outside: `isInput`, `isControl`, `isDisturbance`, or a state without a calculation.
+    /// From outside: `isInput`, `isControl`, `isDisturbance`, a state without a calculation, or whatever has neither a
+    /// definition nor an initial value.
     Input,
     /// Its initial value, unless it is set.
     Constant,

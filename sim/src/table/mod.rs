@@ -64,11 +64,7 @@ impl Table {
     ///
     /// # Errors
     /// [`TableError`] says which number or axis is wrong.
-    pub fn new(
-        breakpoints: Vec<Vec<f64>>,
-        values: Vec<f64>,
-        interpolation: Interpolation,
-    ) -> Result<Self, TableError> {
+    pub fn new(breakpoints: Vec<Vec<f64>>, values: Vec<f64>, interpolation: Interpolation) -> Result<Self, TableError> {
         if breakpoints.is_empty() || breakpoints.len() > MAX_AXES {
             return Err(TableError::Axes { found: breakpoints.len() });
         }
@@ -164,7 +160,11 @@ impl Table {
     #[inline]
     fn line(&self, cell: &Cell, row: usize) -> f64 {
         let low = row + cell.index();
-        if cell.fraction == 0.0 { self.values[low] } else { blend(self.values[low], self.values[low + 1], cell.fraction) }
+        if cell.fraction == 0.0 {
+            self.values[low]
+        } else {
+            blend(self.values[low], self.values[low + 1], cell.fraction)
+        }
     }
 
     fn linear(&self, cells: &[Cell], axis: usize, from: usize) -> f64 {

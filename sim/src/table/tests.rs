@@ -24,8 +24,7 @@ fn slow_linear(axes: &[Vec<f64>], values: &[f64], point: &[f64]) -> f64 {
 fn slow_pchip(axes: &[Vec<f64>], values: &[f64], point: &[f64]) -> f64 {
     let Some((axis, rest)) = axes.split_first() else { return values[0] };
     let row = values.len() / axis.len();
-    let nodes: Vec<f64> =
-        values.chunks_exact(row).map(|chunk| slow_pchip(rest, chunk, &point[1..])).collect();
+    let nodes: Vec<f64> = values.chunks_exact(row).map(|chunk| slow_pchip(rest, chunk, &point[1..])).collect();
     let x = point[0].max(axis[0]).min(axis[axis.len() - 1]);
     let slopes = pchip::slopes(axis, &nodes);
     for node in 0..axis.len() - 1 {
@@ -192,10 +191,7 @@ fn numbers_that_are_no_table_are_refused_with_their_place() {
     assert_eq!(table(&[&[0.0, 1.0]], &[0.0, f64::INFINITY]), infinite);
     assert!(matches!(table(&[&[0.0, f64::NAN]], &[0.0; 2]), TableError::Number { .. }));
     assert_eq!(table(&[&[0.0, 5e-324]], &[0.0, 1.0]), TableError::Steep { axis: 0 });
-    assert_eq!(
-        falling.to_string(),
-        "axis 1: breakpoint 2 must be above 4, the one before, found 4"
-    );
+    assert_eq!(falling.to_string(), "axis 1: breakpoint 2 must be above 4, the one before, found 4");
 }
 
 /// Prints the cost of a look-up; asserts nothing: `cargo test -p poligon-sim --release -- --ignored --nocapture speed`.
