@@ -70,14 +70,14 @@ fn f16_propulsion_passes_its_9_shots() {
     check(&format!("{F16}/F16_prop.dml"), 9);
 }
 
-/// Every model compiles with all its inputs and all its outputs, and with inputs of 0 or their initial value no output
+/// Every model that is one (see below) compiles with all its inputs and all its outputs, and with inputs of 0 or their initial value no output
 /// is NaN.
 #[test]
 fn every_model_runs() {
     let mut files: Vec<String> =
         ["aero", "prop", "inertia", "control", "gnc"].map(|part| format!("{F16}/F16_{part}.dml")).into();
     files.extend(["aero", "prop", "inertia"].map(|part| format!("two-stage_package/twostage_{part}.dml")));
-    let plain = ["orbital_sphere", "orbital_station", "orbital_cylinder", "cannonball", "brick"];
+    let plain = ["orbital_station", "orbital_cylinder", "cannonball", "brick"];
     files.extend(plain.map(|name| format!("{name}_inertia.dml")));
     files.extend(["cannonball", "brick"].map(|name| format!("{name}_aero.dml")));
     for file in files {
@@ -101,6 +101,14 @@ fn every_model_runs() {
             assert!(known || !at_border, "{file} {}: units {:?}", variable.id, variable.units);
         }
     }
+}
+
+/// NASA's sphere gives its inertia as "(2/5)" and a Greek pi, where only a number may stand: refused, not guessed.
+#[test]
+fn an_initial_value_that_is_no_number_is_refused_where_it_stands() {
+    let Some(text) = model("orbital_sphere_inertia.dml") else { return };
+    let error = Document::parse(&text).unwrap_err();
+    assert!(matches!(&error, DavemlError::Number { place, .. } if place.owner == "XIXX"), "{error}");
 }
 
 /// The control law's names differ in case from those of the propulsion; its limits and switches, by hand.
@@ -317,11 +325,11 @@ fn wrong_documents_say_what_and_where() {
     assert_eq!(with("-2; 0 2", "-2; 0"), "line 13, T: expected 6 values, one a node, found 5");
     assert_eq!(with("-2; 0 2", "-2; 0 inf"), "line 14, T: expected a finite number, found \"inf\"");
     assert_eq!(with("0.0 1.0", "1.0 1.0"), "line 13, T: axis 0: breakpoint 1 must be above 1, the one before, found 1");
-    assert_eq!(with("varID='m' units", "varID='a' units"), "line 3: a second variable \"a\"");
+    assert_eq!(with("varID='m' units", "varID='a' units"), "line 4: a second variable \"a\"");
     assert_eq!(with("varID='cd'>0", "varID='dl'>0"), "line 18: a second definition of variable \"dl\"");
     assert_eq!(with("'discrete'", "'cubicSpline'"), "line 20, h: interpolate \"cubicSpline\" is not supported");
-    assert_eq!(with("maxValue='20'", "maxValue='-30'"), "line 2, a: expected minValue -20 not above maxValue -30");
-    assert_eq!(with("<isInput/>", "<isInputt/>"), "line 2, a: <isInputt> is not supported");
+    assert_eq!(with("maxValue='20'", "maxValue='-30'"), "line 3, a: expected minValue -20 not above maxValue -30");
+    assert_eq!(with("<isInput/>", "<isInputt/>"), "line 3, a: <isInputt> is not supported");
     assert_eq!(
         wrong(&["a", "b", "c"].iter().zip(["b", "c", "a"]).map(|(id, of)| format!("<variableDef name='{id}' varID='{id}'><calculation><math><apply><sin/><ci>{of}</ci></apply></math></calculation></variableDef>")).collect::<String>()),
         "variables depend on one another in a circle: a -> b -> c"
@@ -341,7 +349,7 @@ fn hostile_documents_are_refused_in_bounded_time() {
         // Comparisons of comparisons must not double at each level.
         let chain = calculation(&nested("<apply><lt/><ci>x</ci>", "<ci>y</ci></apply>", times));
         assert_eq!(chain.is_err(), times > 150);
-        assert!(times == 150 || matches!(document(&nested("<description>", "</description>", times)), Err(_)));
+        assert!(times == 150 || document(&nested("<description>", "</description>", times)).is_err());
     }
     // Wide and deep at once: the depth of a tree is not the product.
     let wide = format!("<apply><plus/>{}", "<ci>x</ci>".repeat(1_000));
@@ -371,6 +379,9 @@ fn hostile_documents_are_refused_in_bounded_time() {
 }
 
 proptest! {
+    // A failure prints its case; no file of them is kept beside the test.
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     /// Whatever is cut out of, put into or changed in a document, reading and checking it gives a result or an error.
     #[test]
     fn damaged_documents_never_panic(at in any::<prop::sample::Index>(), cut in 0usize..200, put in "[<>/a-zA-Z0-9 ='\"&;.!-]{0,12}") {
@@ -409,12 +420,13 @@ fn speed_of_a_run() {
         let ids: Vec<_> = inputs.iter().map(|v| v.id.as_str()).collect();
         let program = document.program(&[], &ids, &outputs).unwrap();
         let (mut memory, mut found) = (program.memory(), vec![0.0; outputs.len()]);
+        let points: Vec<[f64; 32]> =
+            (0..64u32).map(|step| std::array::from_fn(|at| f64::from((step * (at as u32 + 1)) % 97) * 0.1)).collect();
         let mut best = f64::INFINITY;
         for _ in 0..7 {
             let started = Instant::now();
-            for step in 0..200_000u32 {
-                let values: [f64; 32] = std::array::from_fn(|at| f64::from((step * (at as u32 + 1)) % 97) * 0.1);
-                program.run(black_box(&values[..ids.len()]), &mut memory, &mut found);
+            for step in 0..200_000 {
+                program.run(black_box(&points[step % 64][..ids.len()]), &mut memory, &mut found);
                 black_box(&found);
             }
             best = best.min(started.elapsed().as_secs_f64() / 200_000.0);

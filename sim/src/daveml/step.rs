@@ -196,9 +196,9 @@ impl Layout {
                     self.tables.push(tables[*table].clone());
                 }
                 let cells: Vec<u32> = cells.iter().map(|&cell| self.places[cell as usize]).collect();
-                match cells.as_slice() {
-                    &[cell] => Operation::LookUp1 { table: number, cell, to },
-                    &[x, y] => Operation::LookUp2 { table: number, cells: [x, y], to },
+                match *cells.as_slice() {
+                    [cell] => Operation::LookUp1 { table: number, cell, to },
+                    [x, y] => Operation::LookUp2 { table: number, cells: [x, y], to },
                     _ => {
                         let first = self.cell_lists.len() as u32;
                         self.cell_lists.extend_from_slice(&cells);
