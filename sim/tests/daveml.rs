@@ -372,6 +372,14 @@ fn hostile_documents_are_refused_in_bounded_time() {
     assert!(matches!(Document::parse(bomb), Err(DavemlError::Xml(_))));
     let attributes: String = (0..200_000).map(|n| format!(" a{n}=''")).collect();
     assert!(matches!(Document::parse(&format!("<DAVEfunc{attributes}/>")), Err(DavemlError::Xml(_))));
+    let spaces: String = (0..30_000).map(|n| format!("<description xmlns:n{n}='u'/>")).collect();
+    assert!(matches!(document(&spaces), Err(DavemlError::Xml(_))));
+    // Places of many signals are not each counted from the start of the text.
+    let signal = "<signal><varID>v</varID><signalValue>1</signalValue></signal>\n".repeat(100_000);
+    let many = "<variableDef name='v' varID='v' initialValue='1'/><checkData><staticShot><checkOutputs>".to_string()
+        + &signal
+        + "</checkOutputs></staticShot></checkData>";
+    assert!(document(&many).unwrap().check().unwrap()[0].passed);
     for text in ["", "<", "<DAVEfunc", "<DAVEfunc>", "<other/>", "\u{0}", "<DAVEfunc><variableDef/></DAVEfunc>"] {
         assert!(Document::parse(text).is_err(), "{text}");
     }

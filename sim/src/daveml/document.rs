@@ -51,7 +51,8 @@ impl Document {
     /// [`DavemlError`] names what is wrong, where, and in which variable or function.
     pub fn parse(text: &str) -> Result<Self, DavemlError> {
         let xml = xml::open(text)?;
-        let root = Element::root(&xml);
+        let lines = xml::Lines::of(text);
+        let root = Element::root(&xml, &lines);
         if root.name() != "DAVEfunc" {
             return Err(root.expected("<DAVEfunc> as the outermost element"));
         }

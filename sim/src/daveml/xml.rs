@@ -12,12 +12,31 @@ pub const MAX_DEPTH: usize = 200;
 const MAX_BYTES: usize = 64 << 20;
 /// Longest tag, bytes: the parser compares the attributes of a tag in pairs.
 const MAX_TAG_BYTES: usize = 16 << 10;
+/// Most namespace declarations: the parser copies those in force wherever one is added. Models have one a calculation.
+const MAX_NAMESPACES: usize = 20_000;
 
 /// An element and the name of the variable, function or shot that it belongs to.
 #[derive(Debug, Clone)]
 pub struct Element<'a, 'input> {
     node: Node<'a, 'input>,
     owner: &'a str,
+    lines: &'a Lines,
+}
+
+/// Where lines begin: the parser itself would count them from the start for each place.
+#[derive(Debug)]
+pub struct Lines(Vec<usize>);
+
+impl Lines {
+    /// Of a text.
+    pub fn of(text: &str) -> Self {
+        Self(text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at).collect())
+    }
+
+    /// The line of a byte, from 1.
+    fn line(&self, at: usize) -> u32 {
+        self.0.partition_point(|&end| end < at) as u32 + 1
+    }
 }
 
 /// Parses a text, within the bounds of this reader.
@@ -28,6 +47,9 @@ pub fn open(text: &str) -> Result<Document<'_>, DavemlError> {
     // An entity in an entity multiplies; no model needs one of its own.
     if text.contains("<!ENTITY") {
         return Err(DavemlError::Xml("entity declarations are not supported".into()));
+    }
+    if text.matches("xmlns").nth(MAX_NAMESPACES).is_some() {
+        return Err(DavemlError::Xml(format!("more than {MAX_NAMESPACES} namespace declarations")));
     }
     refuse_long_tags(text)?;
     let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
@@ -67,8 +89,8 @@ pub fn number(text: &str) -> Option<f64> {
 
 impl<'a, 'input> Element<'a, 'input> {
     /// The outermost element.
-    pub fn root(document: &'a Document<'input>) -> Self {
-        Self { node: document.root_element(), owner: "" }
+    pub fn root(document: &'a Document<'input>, lines: &'a Lines) -> Self {
+        Self { node: document.root_element(), owner: "", lines }
     }
 
     /// Its name.
@@ -78,13 +100,13 @@ impl<'a, 'input> Element<'a, 'input> {
 
     /// The same element, as the one that errors name for itself and those inside.
     pub fn named(&self, owner: &'a str) -> Self {
-        Self { node: self.node, owner }
+        Self { node: self.node, owner, lines: self.lines }
     }
 
     /// The elements in it.
     pub fn children(&self) -> impl Iterator<Item = Self> + use<'a, 'input> {
-        let owner = self.owner;
-        self.node.children().filter(Node::is_element).map(move |node| Self { node, owner })
+        let (owner, lines) = (self.owner, self.lines);
+        self.node.children().filter(Node::is_element).map(move |node| Self { node, owner, lines })
     }
 
     /// The one child of a name; `None` if there is none.
@@ -139,7 +161,7 @@ impl<'a, 'input> Element<'a, 'input> {
 
     /// Its line and owner.
     pub fn place(&self) -> Place {
-        let line = self.node.document().text_pos_at(self.node.range().start).row;
+        let line = self.lines.line(self.node.range().start);
         Place { line, owner: shortened(self.owner) }
     }
 
