@@ -19,6 +19,7 @@ pub mod ground_contact;
 pub mod input;
 pub mod integrate;
 pub mod planet;
+pub mod rigid;
 pub mod run;
 pub mod slew;
 pub mod snapshot;
