@@ -160,6 +160,9 @@ fn strike(path: &StepPath, target: &Target) -> Option<TargetImpact> {
     let first = from.attitude.normalize();
     let back = first.conjugate();
     let last = back * to.attitude.normalize();
+    if !first.is_normalized() || !last.is_normalized() {
+        return None;
+    }
     let turn = if last.w < 0.0 { -last } else { last }.to_scaled_axis();
     let seen = StepPath {
         from_m: back * relative.from_m,
@@ -168,7 +171,7 @@ fn strike(path: &StepPath, target: &Target) -> Option<TargetImpact> {
         to_mps: back * relative.to_mps,
         step_s: path.step_s,
     };
-    if !seen.is_sound() || !turn.is_finite() {
+    if !seen.is_sound() {
         return None;
     }
     let whole = Span { path: seen, turn, shape: &target.shape, from: 0.0, to: 1.0 };
@@ -179,8 +182,8 @@ fn strike(path: &StepPath, target: &Target) -> Option<TargetImpact> {
     let fraction = span.from + (span.to - span.from) * entry.fraction;
     let attitude = first * DQuat::from_scaled_axis(turn * fraction);
     // r' = turned back (w') - omega x r: the target's own turn carries its material to the path.
-    let velocity_in_target = span.turned_back(seen.velocity_mps(fraction), fraction)
-        - (turn / path.step_s).cross(point_in_target_m);
+    let velocity_in_target =
+        span.turned_back(seen.velocity_mps(fraction), fraction) - (turn / path.step_s).cross(point_in_target_m);
     let velocity_mps = attitude * velocity_in_target;
     Some(TargetImpact {
         id: target.id,

@@ -128,7 +128,8 @@ fn bent_steps_at_posts_edges_and_diagonals_do_not_pass_either() {
     while tried < 30_000 {
         let aim = delicate_point(&area, &mut random);
         let direction = downward(&mut random);
-        let (from, to) = (aim - direction * random.random_range(0.1..40.0), aim + direction * random.random_range(0.001..9.0));
+        let (from, to) =
+            (aim - direction * random.random_range(0.1..40.0), aim + direction * random.random_range(0.001..9.0));
         let bend = |random: &mut StdRng| DVec3::from_array([(); 3].map(|()| random.random_range(-50.0..50.0)));
         let step_s = 1.0 / 120.0;
         let mean = (to - from) / step_s;
@@ -170,7 +171,14 @@ fn fly(place: DVec3, velocity: DVec3, k: f64, step_s: f64) -> StepPath {
 }
 
 /// The flight's impact and the step it is in; `None` if it leaves the world. Every sample before it is above the ground.
-fn impact_of_flight(area: &Area, mut place: DVec3, mut velocity: DVec3, k: f64, step_s: f64, samples: u32) -> Option<(StepPath, Impact)> {
+fn impact_of_flight(
+    area: &Area,
+    mut place: DVec3,
+    mut velocity: DVec3,
+    k: f64,
+    step_s: f64,
+    samples: u32,
+) -> Option<(StepPath, Impact)> {
     loop {
         let path = fly(place, velocity, k, step_s);
         let impact = ground_impact(&path, area);
@@ -241,8 +249,8 @@ fn the_same_shot_at_a_tenth_of_the_step_lands_in_the_same_place() {
         let start = DVec3::new(x, area.height_m(x, z).unwrap() + 20.0, z);
         let azimuth = random.random_range(0.0f64..std::f64::consts::TAU);
         let launch = DVec3::new(azimuth.cos(), random.random_range(0.2..1.5), azimuth.sin()).normalize() * 800.0;
-        let [whole, tenth] =
-            [120.0, 1_200.0].map(|hz| impact_of_flight(&area, start, launch, 3e-4, 1.0 / hz, 1).map(|(_, impact)| impact));
+        let [whole, tenth] = [120.0, 1_200.0]
+            .map(|hz| impact_of_flight(&area, start, launch, 3e-4, 1.0 / hz, 1).map(|(_, impact)| impact));
         let (Some(whole), Some(tenth)) = (whole, tenth) else { continue };
         worst = worst.max(whole.point_m.distance(tenth.point_m) * whole.grazing_rad.sin());
     }
@@ -376,7 +384,9 @@ fn the_earlier_of_ground_and_target_is_first() {
         Target { id: StableId(id), shape: Shape::block(DVec3::splat(5.0)).unwrap(), from: pose, to: pose }
     };
     let first = |targets: &[Target], own| first_impact(&path, &area, targets, own);
-    assert!(matches!(first(&[target(1, 40.0)], None), Some(FirstImpact::Target(hit)) if (hit.point_m.y - 45.0).abs() < 1e-12));
+    assert!(
+        matches!(first(&[target(1, 40.0)], None), Some(FirstImpact::Target(hit)) if (hit.point_m.y - 45.0).abs() < 1e-12)
+    );
     assert!(matches!(first(&[target(1, -40.0)], None), Some(FirstImpact::Ground(hit)) if hit.point_m.y.abs() < 1e-12));
     assert!(matches!(first(&[target(1, 40.0)], Some(StableId(1))), Some(FirstImpact::Ground(_))));
     assert!(matches!(first(&[], None), Some(FirstImpact::Ground(_))));

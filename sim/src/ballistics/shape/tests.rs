@@ -58,8 +58,12 @@ fn casts_are_the_engines() {
             let theirs: Box<dyn RayCast> = match &shape.form {
                 Form::Sphere { radius_m } => Box::new(engine::Ball::new(*radius_m)),
                 Form::Block { half_m } => Box::new(engine::Cuboid::new(Vector::new(half_m.x, half_m.y, half_m.z))),
-                Form::Capsule { half_height_m, radius_m } => Box::new(engine::Capsule::new_y(*half_height_m, *radius_m)),
-                Form::Cylinder { half_height_m, radius_m } => Box::new(engine::Cylinder::new(*half_height_m, *radius_m)),
+                Form::Capsule { half_height_m, radius_m } => {
+                    Box::new(engine::Capsule::new_y(*half_height_m, *radius_m))
+                }
+                Form::Cylinder { half_height_m, radius_m } => {
+                    Box::new(engine::Cylinder::new(*half_height_m, *radius_m))
+                }
                 // A hull is tested by its own planes below.
                 Form::Hull { .. } => continue,
             };
@@ -83,9 +87,14 @@ fn casts_are_the_engines() {
     // Closed forms on both sides: some ten roundings of 30 m, magnified by at most 1e3 at a graze of the round ones.
     let roundings_m = 10.0 * 30.0 * f64::EPSILON * 1e3;
     for kind in 0..3 {
-        assert!(hits[kind] > 5_000 && lost[kind] == 0 && worst[kind] < roundings_m, "{kind}: {hits:?} {worst:?} {lost:?}");
+        assert!(
+            hits[kind] > 5_000 && lost[kind] == 0 && worst[kind] < roundings_m,
+            "{kind}: {hits:?} {worst:?} {lost:?}"
+        );
     }
-    assert!(hits[3] > 5_000 && worst[3] < 1e-6 && lost[3] == 0, "iterated: {worst:?} {lost:?}");
+    // The engine iterates on a cylinder until the square root of ten epsilons of a distance, here of up to 40 m.
+    let iterated_m = (10.0 * f64::EPSILON).sqrt() * 40.0;
+    assert!(hits[3] > 5_000 && worst[3] < iterated_m && lost[3] == 0, "iterated: {worst:?} {lost:?}");
 }
 
 #[test]
@@ -97,7 +106,8 @@ fn an_entry_is_on_the_surface_and_the_first() {
                 let (from, to) = (vector(&mut random, 15.0), vector(&mut random, 5.0));
                 let entry = shape.enter(from, to);
                 let end = entry.map_or(1.0, |entry| entry.fraction);
-                for i in 0..20 {
+                // A start inside is at fraction 0: nothing comes before it.
+                for i in 0..if end > 0.0 { 20 } else { 0 } {
                     let p = from.lerp(to, end * f64::from(i) / 20.0);
                     // Roundings of 30 m: ten of 2^-48 m.
                     assert!(shape.distance_m(p) > -4e-14, "{shape:?} {from} {to}");
