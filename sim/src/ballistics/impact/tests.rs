@@ -340,7 +340,8 @@ fn steps_of_kilometres_and_of_huge_bend_are_answered() {
     assert!(ground_impact(&across, &wide).is_none(), "ends beyond the world, before that above it");
     let across = StepPath::straight(DVec3::new(-2e5, 200.0, -2e5), DVec3::new(2e5, -99.0, 2e5), 1.0);
     check_impact(&wide, &across, &ground_impact(&across, &wide).unwrap());
-    // Bends of up to 1e6 m/s: within the chords' bound; the path ends under the ground, so it strikes.
+    // The path ends under the ground, so it strikes, however far it swings out: up to 1e11 m, where a rounding is more
+    // than a micrometre from 1e7 m/s on.
     let area = rough();
     for exponent in 0..=12 {
         let bend = DVec3::new(1.0, 1.0, -0.7) * 10f64.powi(exponent);
@@ -419,6 +420,26 @@ fn the_earlier_of_ground_and_target_is_first() {
     assert!(matches!(first(&[], None), Some(FirstImpact::Ground(_))));
     // Level with the ground: both at 1/2, and the target is what was shot at.
     assert!(matches!(first(&[target(1, -5.0)], None), Some(FirstImpact::Target(hit)) if hit.fraction == 0.5));
+}
+
+#[test]
+fn the_far_corner_of_a_world_of_400_km_is_as_exact() {
+    let grid = Grid::centred(200.0, 67, 67).unwrap();
+    let area = Ground::new(Arc::new(synthetic::rough(grid, 9, 800.0))).whole();
+    let mut random = StdRng::seed_from_u64(SEED_BENT);
+    let corner = DVec3::new(grid.east_m() - 3_000.0, 0.0, grid.south_m() - 3_000.0);
+    let mut struck = 0;
+    for _ in 0..3_000 {
+        let aim = corner + DVec3::new(random.random_range(0.0..2_900.0), 0.0, random.random_range(0.0..2_900.0));
+        let aim = DVec3 { y: area.height_m(aim.x, aim.z).unwrap(), ..aim };
+        let velocity = downward(&mut random) * random.random_range(50.0..3_000.0);
+        let path = fly(aim - velocity * 0.004, velocity, 1e-3, 1.0 / 120.0);
+        if let Some(impact) = ground_impact(&path, &area) {
+            struck += 1;
+            check_impact(&area, &path, &impact);
+        }
+    }
+    assert!(struck > 2_900, "{struck}");
 }
 
 /// Not a test of what is true: prints the cost of an ordinary step beside that of its one segment.
