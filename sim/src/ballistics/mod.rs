@@ -7,4 +7,4 @@ mod chords;
 pub mod impact;
 pub mod path;
 pub mod shape;
-pub mod target;
+pub mod targets;
