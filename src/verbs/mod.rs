@@ -9,5 +9,6 @@ pub mod height;
 pub mod info;
 pub mod shot;
 pub mod sight;
+pub mod simulate;
 pub mod trade;
 pub mod verify;

@@ -17,6 +17,7 @@ use crate::file::FileError;
 use glam::{DMat3, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A DAVE-ML file of a model.
 #[derive(Debug, Clone)]
@@ -24,7 +25,7 @@ pub struct Source {
     /// The file.
     pub file: PathBuf,
     /// What it says.
-    pub document: Document,
+    pub document: Arc<Document>,
     /// What the model sets in it.
     pub set: BTreeMap<String, Setting>,
 }
@@ -179,9 +180,7 @@ impl Links {
 
     /// Memory for [`Self::run`].
     pub fn memory(&self) -> LinkMemory {
-        let one = |link: &Link| {
-            (link.program.memory(), vec![0.0; link.inputs.len()], vec![0.0; link.outputs.len()])
-        };
+        let one = |link: &Link| (link.program.memory(), vec![0.0; link.inputs.len()], vec![0.0; link.outputs.len()]);
         LinkMemory(self.links.iter().map(one).collect())
     }
 
@@ -258,8 +257,7 @@ pub fn constants(sources: &[Source]) -> Result<Constants, FileError> {
         Ok((x.is_some() || y.is_some() || z.is_some())
             .then(|| DVec3::new(x.unwrap_or(0.0), y.unwrap_or(0.0), z.unwrap_or(0.0))))
     };
-    let moments =
-        three(["bodyMomentOfInertia_Roll", "bodyMomentOfInertia_Pitch", "bodyMomentOfInertia_Yaw"])?;
+    let moments = three(["bodyMomentOfInertia_Roll", "bodyMomentOfInertia_Pitch", "bodyMomentOfInertia_Yaw"])?;
     // S-119's products of inertia are the integrals of xy, yz, zx; the tensor holds their negatives.
     let products =
         three(["bodyProductOfInertia_XY", "bodyProductOfInertia_YZ", "bodyProductOfInertia_ZX"])?.unwrap_or_default();
@@ -317,7 +315,9 @@ fn origin(
         return Ok(From::Number(si / unit(source, variable)?));
     }
     let control = |stem: &str| {
-        controls.iter().position(|c| c.name == stem || without_unit(&c.name).is_some_and(|(s, _)| s.eq_ignore_ascii_case(stem)))
+        controls
+            .iter()
+            .position(|c| c.name == stem || without_unit(&c.name).is_some_and(|(s, _)| s.eq_ignore_ascii_case(stem)))
     };
     let slot_of_control = |place: usize| super::quantity::QUANTITIES + place;
     match source.set.iter().find(|(name, _)| means(name, variable)) {
@@ -360,15 +360,20 @@ fn run_order(sources: &[Source], origins: &[Vec<(&Variable, From)>]) -> Result<V
                 .filter(|index| !order.contains(index))
                 .flat_map(|index| {
                     origins[index].iter().filter_map(move |(v, from)| match from {
-                        From::Output(of, _) => {
-                            Some(format!("{} needs {} of {}", sources[index].file.display(), v.name, sources[*of].file.display()))
-                        }
+                        From::Output(of, _) => Some(format!(
+                            "{} needs {} of {}",
+                            sources[index].file.display(),
+                            v.name,
+                            sources[*of].file.display()
+                        )),
                         _ => None,
                     })
                 })
                 .collect();
             let first = (0..sources.len()).find(|index| !order.contains(index)).unwrap_or(0);
-            let why = format_args!("expected files that feed each other in one order, found a cycle: {}", left.join("; ")).to_string();
+            let why =
+                format_args!("expected files that feed each other in one order, found a cycle: {}", left.join("; "))
+                    .to_string();
             return Err(FileError::new(&sources[first].file, why));
         };
         order.push(ready);

@@ -13,6 +13,7 @@
 //! | `trim.rs` | controls and attitude that hold it |
 //! | `inputs.rs` | `I.csv` |
 //! | `simulation.rs` | steps, input edges, rows, stops |
+//! | `stop.rs` | what ends a flight early |
 //! | `stiffness.rs` | how short a step must be |
 //!
 //! Body axes: x forward, y right, z down. SI; radians inside. The position is that of the centre of gravity.
@@ -28,6 +29,7 @@ pub mod quantity;
 pub mod simulation;
 pub mod start;
 pub mod stiffness;
+pub mod stop;
 pub mod trim;
 
 pub use inputs::Inputs;

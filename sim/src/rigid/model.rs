@@ -17,6 +17,7 @@ use crate::table::Table;
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A control of a model, in the unit that its name ends with.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,6 +79,7 @@ pub struct Model {
     links: Links,
     uses: [bool; QUANTITIES],
     course: Course,
+    refuses: bool,
 }
 
 /// Force and moment about the centre of gravity, body axes, without gravity.
@@ -112,7 +114,12 @@ impl Model {
         let body = match (&file.body, constants.mass_kg, constants.inertia_kgm2) {
             (Some(body), ..) => (body.mass_kg, tensor(body.inertia_kgm2), DVec3::from_array(body.cg_m)),
             (None, Some(mass_kg), Some(inertia)) => (mass_kg, inertia, constants.cg_m.unwrap_or_default()),
-            _ => return Err(here("body: expected mass_kg and inertia_kgm2, found neither them nor a DAVE-ML file with both".to_owned())),
+            _ => {
+                return Err(here(
+                    "body: expected mass_kg and inertia_kgm2, found neither them nor a DAVE-ML file with both"
+                        .to_owned(),
+                ));
+            }
         };
         let (mass_kg, inertia_kgm2, cg_m) = body;
         check_body(mass_kg, inertia_kgm2).map_err(here)?;
@@ -128,7 +135,10 @@ impl Model {
         );
         for (key, length) in [("area_m2", area), ("span_m", span), ("chord_m", chord)] {
             if length.is_some_and(|length| !(length > 0.0 && length < 1e6)) {
-                return Err(here(format!("reference.{key}: expected a number above 0, found {}", length.unwrap_or(0.0))));
+                return Err(here(format!(
+                    "reference.{key}: expected a number above 0, found {}",
+                    length.unwrap_or(0.0)
+                )));
             }
             if length.is_none() && !(terms.is_empty() && links.is_empty()) && needs(key, &terms, &file) {
                 return Err(here(format!("reference.{key}: expected a number above 0, found none")));
@@ -167,7 +177,9 @@ impl Model {
             links,
             uses: [false; QUANTITIES],
             course: Course::None,
+            refuses: false,
         };
+        model.refuses = model.tables.0.iter().any(|bound| bound.refuse_outside);
         model.note_uses();
         Ok(model)
     }
@@ -224,9 +236,10 @@ impl Model {
     /// The course that the autopilot's files are given: by a control, or by what the model sets.
     fn commanded_course(&self) -> Course {
         const NAME: &str = "trueBaseCourseCommand";
-        let named = |name: &str| without_unit(name).filter(|(stem, _)| stem.eq_ignore_ascii_case(NAME));
-        if let Some((place, (_, si))) = self.controls.iter().enumerate().find_map(|(i, c)| Some((i, named(&c.name)?))) {
-            return Course::Control(place, si);
+        for (place, control) in self.controls.iter().enumerate() {
+            if let Some((_, si)) = without_unit(&control.name).filter(|(stem, _)| stem.eq_ignore_ascii_case(NAME)) {
+                return Course::Control(place, si);
+            }
         }
         let fixed = self.sources.iter().find_map(|source| {
             let variable = source.document.variable(NAME).ok()?;
@@ -280,6 +293,12 @@ impl Model {
         loads
     }
 
+    /// Whether a table of the model refuses arguments outside it.
+    #[inline]
+    pub fn refuses(&self) -> bool {
+        self.refuses
+    }
+
     /// The first argument outside a table that refuses it, as a sentence.
     pub fn refused(&self, slots: &[f64; SLOTS]) -> Option<String> {
         self.tables.refused(slots)
@@ -304,7 +323,7 @@ fn sources(path: &Path, file: &ModelFile) -> Result<Vec<Source>, FileError> {
     let one = |daveml: &super::model_file::DavemlFile| {
         let file = path.parent().map_or_else(|| daveml.file.clone(), |folder| folder.join(&daveml.file));
         let document = Document::parse(&file::text(&file)?).map_err(|error| FileError::new(&file, error))?;
-        Ok(Source { file, document, set: daveml.set.clone() })
+        Ok(Source { file, document: Arc::new(document), set: daveml.set.clone() })
     };
     file.daveml.iter().map(one).collect()
 }
@@ -352,13 +371,23 @@ fn check_body(mass_kg: f64, inertia: DMat3) -> Result<(), String> {
     let positive = |m: DMat3, least: f64| {
         let e = |row: usize, column: usize| m.col(column)[row];
         let pair = |a: usize, b: usize| e(a, a) * e(b, b) - e(a, b) * e(b, a) >= least * trace;
-        (0..3).all(|a| e(a, a) >= least) && pair(0, 1) && pair(0, 2) && pair(1, 2) && m.determinant() >= least * trace * trace
+        (0..3).all(|a| e(a, a) >= least)
+            && pair(0, 1)
+            && pair(0, 2)
+            && pair(1, 2)
+            && m.determinant() >= least * trace * trace
     };
     if !(trace > 0.0 && positive(inertia, 1e-12 * trace)) {
-        return Err(format!("body.inertia_kgm2: expected positive principal moments, found the tensor singular or negative: {:?}", inertia.to_cols_array_2d()));
+        return Err(format!(
+            "body.inertia_kgm2: expected positive principal moments, found the tensor singular or negative: {:?}",
+            inertia.to_cols_array_2d()
+        ));
     }
     if !positive(DMat3::from_diagonal(DVec3::splat(0.5 * trace)) - inertia, -slack) {
-        return Err(format!("body.inertia_kgm2: expected no principal moment above the sum of the others, found {:?}", inertia.to_cols_array_2d()));
+        return Err(format!(
+            "body.inertia_kgm2: expected no principal moment above the sum of the others, found {:?}",
+            inertia.to_cols_array_2d()
+        ));
     }
     Ok(())
 }
@@ -372,7 +401,8 @@ fn slot(name: &str, controls: &[Control]) -> Option<usize> {
 fn slots(key: &str, names: &[String], controls: &[Control]) -> Result<Vec<usize>, String> {
     let one = |name: &String| {
         slot(name, controls).ok_or_else(|| {
-            let known: Vec<&str> = super::quantity::ALL.iter().map(|q| q.1).chain(controls.iter().map(|c| c.name.as_str())).collect();
+            let known: Vec<&str> =
+                super::quantity::ALL.iter().map(|q| q.1).chain(controls.iter().map(|c| c.name.as_str())).collect();
             format!("{key}: expected one of {}, found {name}", known.join(", "))
         })
     };
@@ -422,9 +452,8 @@ fn terms(file: &ModelFile, controls: &[Control], tables: &[String]) -> Result<Ve
     let mut all = Vec::new();
     for (i, term) in file.aero.term.iter().enumerate() {
         let key = format!("aero.term[{i}]");
-        let to = Coefficient::place(&term.to).ok_or_else(|| {
-            format!("{key}.to: expected one of {}, found {}", Coefficient::NAMES.join(", "), term.to)
-        })?;
+        let to = Coefficient::place(&term.to)
+            .ok_or_else(|| format!("{key}.to: expected one of {}, found {}", Coefficient::NAMES.join(", "), term.to))?;
         if file.aero.axes == AxesFile::Body && matches!(term.to.as_str(), "CD" | "CL") {
             return Err(format!("{key}.to: expected CX, CY or CZ in body axes, found {}", term.to));
         }

@@ -139,7 +139,7 @@ impl RigidMotion {
             Place::default()
         };
         let frame_from_ned =
-            if self.flat() || !(local || !self.still) { None } else { Some(self.planet.frame_from_ned(place)) };
+            if self.flat() || (self.still && !local) { None } else { Some(self.planet.frame_from_ned(place)) };
         let to_ned = |v: DVec3| frame_from_ned.map_or(v, |m| m.transpose() * v);
         let air = self.atmosphere.at(place.altitude_m);
 
@@ -148,11 +148,8 @@ impl RigidMotion {
             let wind = self.wind.ned_mps(place.altitude_m);
             through_air -= in_body(frame_from_ned.map_or(wind, |m| m * wind));
         }
-        let earth_rates = if self.planet.rotation_radps == 0.0 {
-            rates(y)
-        } else {
-            rates(y) - in_body(self.planet.rotation())
-        };
+        let earth_rates =
+            if self.planet.rotation_radps == 0.0 { rates(y) } else { rates(y) - in_body(self.planet.rotation()) };
 
         let tas = through_air.length();
         let dynamic_pressure_pa = 0.5 * air.density_kgpm3 * tas * tas;
@@ -179,7 +176,8 @@ impl RigidMotion {
         set(Quantity::QRadps, earth_rates.y);
         set(Quantity::RRadps, earth_rates.z);
         if angles {
-            let [roll, pitch, yaw] = angles_of(&frame_from_ned.map_or(frame_from_body, |m| m.transpose() * frame_from_body));
+            let [roll, pitch, yaw] =
+                angles_of(&frame_from_ned.map_or(frame_from_body, |m| m.transpose() * frame_from_body));
             set(Quantity::RollRad, roll);
             set(Quantity::PitchRad, pitch);
             set(Quantity::YawRad, yaw);

@@ -76,7 +76,7 @@ impl Quantity {
     /// The quantity of a name in AIAA S-119; small and capital letters count alike.
     pub fn in_s119(name: &str) -> Option<Self> {
         let is = |known: &&str| known.eq_ignore_ascii_case(name);
-        ALL.iter().find(|(.., known)| known.iter().any(|k| is(&k))).map(|(quantity, ..)| *quantity)
+        ALL.iter().find(|(.., known)| known.iter().any(|k| is(k))).map(|(quantity, ..)| *quantity)
     }
 }
 
@@ -98,7 +98,10 @@ const SUFFIXES: [(&str, f64); 12] = [
 
 /// A name without its unit, and how much of the SI unit that unit is; `None` if it ends with no unit.
 pub fn without_unit(name: &str) -> Option<(&str, f64)> {
-    SUFFIXES.iter().find_map(|&(suffix, si)| Some((name.strip_suffix(suffix)?, si))).filter(|(stem, _)| !stem.is_empty())
+    SUFFIXES
+        .iter()
+        .find_map(|&(suffix, si)| Some((name.strip_suffix(suffix)?, si)))
+        .filter(|(stem, _)| !stem.is_empty())
 }
 
 #[cfg(test)]
