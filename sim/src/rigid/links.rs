@@ -50,8 +50,8 @@ pub struct Links {
 #[derive(Debug, Clone)]
 struct Link {
     program: Program,
-    /// Slots to add up, and what turns SI into the file's unit.
-    inputs: Vec<(usize, Option<usize>, f64)>,
+    /// Slots to add up, each with what turns its unit into the file's.
+    inputs: Vec<(usize, f64, Option<(usize, f64)>)>,
     /// Slot, and what turns the file's unit into SI.
     outputs: Vec<(usize, f64)>,
 }
@@ -77,7 +77,8 @@ const MOMENT_NAMES: [&str; 3] = ["thrustBodyMoment_Roll", "thrustBodyMoment_Pitc
 /// Where an input comes from.
 enum From {
     Number(f64),
-    Slots(usize, Option<usize>),
+    /// Slots to add up, each with what turns its unit into SI.
+    Slots((usize, f64), Option<(usize, f64)>),
     Output(usize, String),
     Initial,
 }
@@ -110,7 +111,8 @@ impl Links {
         for (index, names) in asked.iter().enumerate() {
             for name in names {
                 slot_of.insert((index, name.clone()), next);
-                links.sink(name, next);
+                let variable = sources[index].document.variables().iter().find(|v| v.id == *name);
+                links.sink(variable.map_or("", |variable| &variable.name), next);
                 next += 1;
             }
         }
@@ -162,11 +164,12 @@ impl Links {
                     continue;
                 }
                 From::Slots(first, second) => (*first, *second),
-                From::Output(of, name) => (slot_of[&(*of, name.clone())], None),
+                From::Output(of, name) => ((slot_of[&(*of, name.clone())], 1.0), None),
             };
+            let per_unit = 1.0 / unit(source, variable)?;
             names.push(variable.id.as_str());
-            inputs.push((first, second, 1.0 / unit(source, variable)?));
-            self.quantities.extend([Some(first), second].into_iter().flatten());
+            inputs.push((first.0, first.1 * per_unit, second.map(|(slot, si)| (slot, si * per_unit))));
+            self.quantities.extend([Some(first), second].into_iter().flatten().map(|(slot, _)| slot));
         }
         let wanted: Vec<&str> = outputs.iter().map(|name| name.as_str()).collect();
         let program = source.document.program(&set, &names, &wanted).map_err(|e| FileError::new(&source.file, e))?;
@@ -188,8 +191,8 @@ impl Links {
     #[inline]
     pub fn run(&self, slots: &mut [f64; SLOTS], memory: &mut LinkMemory, coefficients: &mut [f64; COEFFICIENTS]) {
         for (link, (memory, inputs, outputs)) in self.links.iter().zip(&mut memory.0) {
-            for (input, &(first, second, factor)) in inputs.iter_mut().zip(&link.inputs) {
-                *input = (slots[first] + second.map_or(0.0, |slot| slots[slot])) * factor;
+            for (input, &(first, factor, second)) in inputs.iter_mut().zip(&link.inputs) {
+                *input = slots[first] * factor + second.map_or(0.0, |(slot, factor)| slots[slot] * factor);
             }
             link.program.run(inputs, memory, outputs);
             for (&output, &(slot, factor)) in outputs.iter().zip(&link.outputs) {
@@ -314,16 +317,18 @@ fn origin(
     if let Some((_, si)) = found.iter().find(|(name, _)| means(name, variable)) {
         return Ok(From::Number(si / unit(source, variable)?));
     }
+    // Controls stand in their own units.
     let control = |stem: &str| {
-        controls
-            .iter()
-            .position(|c| c.name == stem || without_unit(&c.name).is_some_and(|(s, _)| s.eq_ignore_ascii_case(stem)))
+        controls.iter().enumerate().find_map(|(place, control)| {
+            let (bare, si) = without_unit(&control.name)?;
+            let slot = super::quantity::QUANTITIES + place;
+            (control.name == stem || bare.eq_ignore_ascii_case(stem)).then_some((slot, si))
+        })
     };
-    let slot_of_control = |place: usize| super::quantity::QUANTITIES + place;
     match source.set.iter().find(|(name, _)| means(name, variable)) {
         Some((_, Setting::Number(value))) => return Ok(From::Number(*value)),
         Some((key, Setting::Column(name))) => {
-            let slot = Quantity::named(name).map(Quantity::slot).or_else(|| control(name).map(slot_of_control));
+            let slot = Quantity::named(name).map(|quantity| (quantity.slot(), 1.0)).or_else(|| control(name));
             return slot.map(|slot| From::Slots(slot, None)).ok_or_else(|| {
                 FileError::new(&source.file, format_args!("set.{key}: expected a quantity or a control, found {name}"))
             });
@@ -333,9 +338,8 @@ fn origin(
     if variable.kind == Kind::Constant {
         return Ok(From::Initial);
     }
-    let quantity = Quantity::in_s119(&variable.name).map(Quantity::slot);
-    if let Some(place) = control(&variable.name) {
-        let slot = slot_of_control(place);
+    let quantity = Quantity::in_s119(&variable.name).map(|quantity| (quantity.slot(), 1.0));
+    if let Some(slot) = control(&variable.name) {
         return Ok(quantity.map_or(From::Slots(slot, None), |quantity| From::Slots(quantity, Some(slot))));
     }
     for (of, other) in sources.iter().enumerate().filter(|(of, _)| *of != index) {
