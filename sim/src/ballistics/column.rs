@@ -163,7 +163,8 @@ mod tests {
         assert_eq!((limit.column, limit.relation, limit.value), (Column::Range, Relation::Equal, 1500.0));
         let Ok(End::Column(limit)) = End::parse("altitude_m<-1e3") else { panic!("not read") };
         assert_eq!((limit.relation, limit.value, limit.text.as_str()), (Relation::Below, -1000.0, "altitude_m<-1e3"));
-        for text in ["", "range_m", "range=5", "range_m=nan", "range_m=inf", "range_m=", "=5", "<", "x_m==5", "é=1", "Ground"]
+        for text in
+            ["", "range_m", "range=5", "range_m=nan", "range_m=inf", "range_m=", "=5", "<", "x_m==5", "é=1", "Ground"]
         {
             assert!(End::parse(text).unwrap_err().contains("expected"), "{text}");
         }

@@ -88,7 +88,8 @@ impl DragCurve {
         let (machs, coefficients): (Vec<f64>, Vec<f64>) = rows.iter().map(|&[mach, cd]| (mach, cd)).unzip();
         let most = coefficients.iter().copied().fold(0.0, f64::max);
         // A monotone cubic is nowhere steeper than 3 times its cell's secant (Fritsch and Carlson, 1980).
-        let slope = |pair: &[[f64; 2]]| pair[1][0] * 3.0 * ((pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0])).abs();
+        let slope =
+            |pair: &[[f64; 2]]| pair[1][0] * 3.0 * ((pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0])).abs();
         let steepest = 2.0 * most + rows.windows(2).map(slope).fold(0.0, f64::max);
         let table = Table::new(vec![machs], coefficients, interpolation).map_err(|error| error.to_string())?;
         if !steepest.is_finite() {
@@ -206,7 +207,7 @@ mod tests {
             ("mach,cd\n0,1,2", "line 2: expected two numbers"),
             ("mach,cd\n0;1", "line 2"),
             ("mach,cd\n\0,\u{1b}[1m", "line 2"),
-            ("mach,cd\n0,1\n1e-320,2", "steep"),
+            ("mach,cd\n0,1\n1e-320,2", "too close"),
         ] {
             let error = read(text).unwrap_err();
             assert!(error.starts_with("d.csv: ") && error.contains(told), "{text:?}: {error}");

@@ -50,11 +50,7 @@ pub fn inverse(shape: Shape, from: Place, to: Place) -> Option<(f64, f64)> {
                         - big_b / 6.0 * cos_middle * (4.0 * sin_sigma * sin_sigma - 3.0) * (2.0 * twice - 1.0)));
         answer = (b * big_a * (sigma - correction), east.atan2(north));
         let c = f / 16.0 * squared * (4.0 + f * (4.0 - 3.0 * squared));
-        let next = apart
-            + (1.0 - c)
-                * f
-                * sin_alpha
-                * (sigma + c * sin_sigma * (cos_middle + c * cos_sigma * twice));
+        let next = apart + (1.0 - c) * f * sin_alpha * (sigma + c * sin_sigma * (cos_middle + c * cos_sigma * twice));
         if (next - lambda).abs() <= 1e-15 {
             break;
         }

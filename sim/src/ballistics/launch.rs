@@ -100,8 +100,8 @@ impl Launch {
         };
         let frame_from_ned = case.planet.frame_from_ned(place);
         let (sin, cos) = azimuth_rad.sin_cos();
-        let axes = frame_from_ned
-            * DMat3::from_cols(DVec3::new(cos, sin, 0.0), DVec3::NEG_Z, DVec3::new(-sin, cos, 0.0));
+        let axes =
+            frame_from_ned * DMat3::from_cols(DVec3::new(cos, sin, 0.0), DVec3::NEG_Z, DVec3::new(-sin, cos, 0.0));
         let velocity_mps = match shot.speed_mps {
             Some(_) => axes * (DVec3::new(elevation_rad.cos(), elevation_rad.sin(), 0.0) * speed_mps),
             None => frame_from_ned * released_ned,

@@ -255,5 +255,4 @@ pub fn advance(
 }
 
 #[cfg(test)]
-#[path = "motion_tests.rs"]
 mod tests;

@@ -217,7 +217,9 @@ impl ProjectileFile {
         };
         if drag_m2pkg > MOST_DRAG_M2PKG {
             let key = self.ways()[0].0;
-            return Err(format!("{key}: expected at most {MOST_DRAG_M2PKG:e} m2 of drag a kilogram, found {drag_m2pkg:e}"));
+            return Err(format!(
+                "{key}: expected at most {MOST_DRAG_M2PKG:e} m2 of drag a kilogram, found {drag_m2pkg:e}"
+            ));
         }
         Ok(drag_m2pkg)
     }

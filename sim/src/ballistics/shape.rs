@@ -108,11 +108,7 @@ impl Shape {
     /// # Errors
     /// [`ShapeError::Size`] names the half that is not above 0.
     pub fn block(half_m: DVec3) -> Result<Self, ShapeError> {
-        let half_m = DVec3::new(
-            size("half_m.x", half_m.x)?,
-            size("half_m.y", half_m.y)?,
-            size("half_m.z", half_m.z)?,
-        );
+        let half_m = DVec3::new(size("half_m.x", half_m.x)?, size("half_m.y", half_m.y)?, size("half_m.z", half_m.z)?);
         Ok(Self { form: Form::Block { half_m }, radius_m: half_m.length() })
     }
 
@@ -164,9 +160,8 @@ impl Shape {
         }
         let radius_m = points_m.iter().map(|p| p.length()).fold(0.0, f64::max);
         // Without a volume some face has all points on it: how deep the farthest one lies is then a rounding.
-        let thinnest = |plane: &Plane| {
-            points_m.iter().map(|p| plane.offset_m - plane.normal.dot(*p)).fold(0.0f64, f64::max)
-        };
+        let thinnest =
+            |plane: &Plane| points_m.iter().map(|p| plane.offset_m - plane.normal.dot(*p)).fold(0.0f64, f64::max);
         if planes.len() < 4 || planes.iter().any(|plane| thinnest(plane) <= 1e-9 * radius_m) {
             return Err(flat());
         }

@@ -179,8 +179,8 @@ fn strike(path: &StepPath, target: &Target) -> Option<TargetImpact> {
     let fraction = span.from + (span.to - span.from) * entry.fraction;
     let attitude = first * DQuat::from_scaled_axis(turn * fraction);
     // r' = turned back (w') - omega x r: the target's own turn carries its material to the path.
-    let velocity_in_target = span.turned_back(seen.velocity_mps(fraction), fraction)
-        - (turn / path.step_s).cross(point_in_target_m);
+    let velocity_in_target =
+        span.turned_back(seen.velocity_mps(fraction), fraction) - (turn / path.step_s).cross(point_in_target_m);
     let velocity_mps = attitude * velocity_in_target;
     Some(TargetImpact {
         id: target.id,

@@ -124,11 +124,7 @@ struct Step {
 ///
 /// # Errors
 /// [`TrajectoryError::Input`] names the key of a file that contradicts another; the others tell what stopped the flight.
-pub fn fly(
-    projectile: &Projectile,
-    case: &Case,
-    ground: Option<&WorldGround>,
-) -> Result<Trajectory, TrajectoryError> {
+pub fn fly(projectile: &Projectile, case: &Case, ground: Option<&WorldGround>) -> Result<Trajectory, TrajectoryError> {
     Flight::new(projectile, case, ground)?.fly()
 }
 
@@ -310,12 +306,7 @@ impl<'a> Flight<'a> {
     /// Where a number of the seen state is 0 within a step; `values` are those at both ends, of different signs.
     ///
     /// Secants within a bracket, the stale end halved (Illinois): to the rounding of the time.
-    fn crossing(
-        &self,
-        step: &Step,
-        values: [f64; 2],
-        number: impl Fn(f64, &State) -> f64,
-    ) -> Result<f64, StepError> {
+    fn crossing(&self, step: &Step, values: [f64; 2], number: impl Fn(f64, &State) -> f64) -> Result<f64, StepError> {
         let [at_start, at_end] = values;
         if at_start * at_end > 0.0 || at_start == 0.0 {
             return Ok(0.0);
@@ -359,9 +350,8 @@ impl<'a> Flight<'a> {
             Every::Never => return Ok(next_row),
             Every::Seconds(seconds) => (seconds, step.from_s + last_s, step.from_s),
             Every::Metres(metres) => {
-                let range = |t_s: f64, y: &State| {
-                    observer.value(Column::Range, &self.motion, t_s, &observer.seen(t_s, y))
-                };
+                let range =
+                    |t_s: f64, y: &State| observer.value(Column::Range, &self.motion, t_s, &observer.seen(t_s, y));
                 (metres, range(step.from_s + last_s, last), range(step.from_s, &step.from))
             }
         };
@@ -373,7 +363,8 @@ impl<'a> Flight<'a> {
             let cut_s = match self.every {
                 Every::Seconds(_) => (target - step.from_s).clamp(0.0, last_s),
                 _ => {
-                    let beyond = |t_s: f64, seen: &State| observer.value(Column::Range, &self.motion, t_s, seen) - target;
+                    let beyond =
+                        |t_s: f64, seen: &State| observer.value(Column::Range, &self.motion, t_s, seen) - target;
                     // A shot that turned back passes a row's range once, on the way out.
                     let whole = Step { from_s: step.from_s, from: step.from, length_s: last_s, before: step.before };
                     self.crossing(&whole, [from - target, reached - target], beyond)?
