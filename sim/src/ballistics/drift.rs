@@ -6,7 +6,7 @@
 //! elevation it gives the side and the order of magnitude only.
 //!
 //! Sg follows from mass m (grains), twist t and length l (calibres) and diameter d (inches):
-//! `30 m / (t2 d3 l (1 + l2)) (v / 2800 ft/s)^(1/3) rho0 / rho`, with rho0 of the standard at sea level. Below 1 the
+//! `30 m / (t2 d3 l (1 + l2)) (v / 2800 ft/s)^(1/3) T / T0 p0 / p`, with the standard's T0 and p0 at sea level. Below 1 the
 //! projectile tumbles and nothing here holds; above [`MOST_STABILITY`], in thin air, Sg is held.
 //!
 //! Invariant: the drift and its rate are 0 at the muzzle and grow from there.
@@ -15,11 +15,13 @@
 //! Ballistics for Long-Range Shooting, 2009.
 
 use super::projectile::Projectile;
-use crate::atmosphere::SEA_LEVEL_DENSITY_KGPM3;
+use crate::atmosphere::AirSample;
 
 /// Largest Sg that the estimate is used with: well above that of any rifle in dense air.
 pub const MOST_STABILITY: f64 = 10.0;
 
+/// Temperature and pressure at which the rule needs no correction, K and Pa.
+const RULE_AIR: (f64, f64) = (288.15, 101_325.0);
 const INCH_M: f64 = 0.0254;
 const GRAIN_KG: f64 = 6.479_891e-5;
 /// Speed at which the rule needs no correction, m/s: 2,800 ft/s.
@@ -36,17 +38,18 @@ pub struct SpinDrift {
 }
 
 impl SpinDrift {
-    /// The drift of a shot through air of the muzzle's density; none without spin or without air.
-    pub fn of(projectile: &Projectile, speed_mps: f64, density_kgpm3: f64) -> Option<Self> {
+    /// The drift of a shot through the muzzle's air; none without spin or without air.
+    pub fn of(projectile: &Projectile, speed_mps: f64, air: &AirSample) -> Option<Self> {
         let (spin, diameter_m) = (projectile.spin?, projectile.diameter_m?);
-        if density_kgpm3 <= 0.0 {
+        if air.pressure_pa <= 0.0 {
             return None;
         }
         let (twist, length) = (spin.twist_m / diameter_m, spin.length_m / diameter_m);
         let inches = diameter_m / INCH_M;
         let rule =
             30.0 * (projectile.mass_kg / GRAIN_KG) / (twist.powi(2) * inches.powi(3) * length * (1.0 + length.powi(2)));
-        let stability = rule * (speed_mps / RULE_MPS).cbrt() * (SEA_LEVEL_DENSITY_KGPM3 / density_kgpm3);
+        let stability =
+            rule * (speed_mps / RULE_MPS).cbrt() * (air.temperature_k / RULE_AIR.0) * (RULE_AIR.1 / air.pressure_pa);
         let stability = stability.min(MOST_STABILITY);
         let right_m = 1.25 * INCH_M * (stability + 1.2);
         Some(Self { stability, coefficient_m: if spin.right { right_m } else { -right_m } })

@@ -157,7 +157,7 @@ impl<'a> Flight<'a> {
         let start = state(launch.position_m, launch.velocity_mps);
         let muzzle_m = case.planet.altitude_m(launch.position_m);
         let speed_mps = launch.velocity_mps.length();
-        let drift = SpinDrift::of(projectile, speed_mps, case.atmosphere.at(muzzle_m).density_kgpm3);
+        let drift = SpinDrift::of(projectile, speed_mps, &case.atmosphere.at(muzzle_m));
         let observer = Observer { case, launch, drift, ground };
         let mut ends = Vec::new();
         if let Some(until) = case.shot.as_ref().and_then(|shot| shot.until.as_ref()) {
