@@ -37,6 +37,8 @@ pub enum Verb {
     Height(HeightArgs),
     /// Whether two points see each other.
     Sight(SightArgs),
+    /// Fly a shell or a bomb, as CSV.
+    Trajectory(TrajectoryArgs),
     /// Take one picture.
     Shot(ShotArgs),
     /// Measure speed beside a yardstick in the same run.
@@ -197,6 +199,24 @@ pub struct SightArgs {
     /// The other end.
     #[arg(long, value_name = "LAT,LON,ALT[:agl]", value_parser = values::place, allow_hyphen_values = true)]
     pub to: Place,
+}
+
+/// `poligon trajectory`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Without --out and --json the rows themselves go to stdout. A file that cannot be used ends with \
+                        exit status 2."
+)]
+pub struct TrajectoryArgs {
+    /// What flies: mass, drag, spin, motor.
+    #[arg(long, value_name = "P.toml")]
+    pub projectile: PathBuf,
+    /// From where, how, through what air, over what Earth, until when.
+    #[arg(long, value_name = "C.toml")]
+    pub case: PathBuf,
+    /// Write the rows to this file.
+    #[arg(long, value_name = "O.csv")]
+    pub out: Option<PathBuf>,
 }
 
 /// `poligon shot`

@@ -10,4 +10,5 @@ pub mod info;
 pub mod shot;
 pub mod sight;
 pub mod trade;
+pub mod trajectory;
 pub mod verify;
