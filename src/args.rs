@@ -39,6 +39,8 @@ pub enum Verb {
     Sight(SightArgs),
     /// Fly a body from files and write its flight as CSV.
     Simulate(SimulateArgs),
+    /// Fly a shell or a bomb, as CSV.
+    Trajectory(TrajectoryArgs),
     /// Take one picture.
     Shot(ShotArgs),
     /// Measure speed beside a yardstick in the same run.
@@ -222,6 +224,24 @@ pub struct SimulateArgs {
     pub out: Option<PathBuf>,
 }
 
+/// `poligon trajectory`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Without --out and --json the rows themselves go to stdout. A file that cannot be used ends with \
+                        exit status 2."
+)]
+pub struct TrajectoryArgs {
+    /// What flies: mass, drag, spin, motor.
+    #[arg(long, value_name = "P.toml")]
+    pub projectile: PathBuf,
+    /// From where, how, through what air, over what Earth, until when.
+    #[arg(long, value_name = "C.toml")]
+    pub case: PathBuf,
+    /// Write the rows to this file.
+    #[arg(long, value_name = "O.csv")]
+    pub out: Option<PathBuf>,
+}
+
 /// `poligon shot`
 #[derive(Debug, Args)]
 pub struct ShotArgs {
@@ -323,7 +343,7 @@ mod tests {
         assert_eq!(refused("fly --eye 91,0,0"), ErrorKind::ValueValidation);
         assert_eq!(refused("fly --frames 0"), ErrorKind::ValueValidation);
         assert_eq!(refused("fly --quality best"), ErrorKind::InvalidValue);
-        for verb in ["trajectory", "scenario", "instructor", "replay", "serve"] {
+        for verb in ["scenario", "instructor", "replay", "serve"] {
             assert_eq!(refused(verb), ErrorKind::InvalidSubcommand);
         }
     }

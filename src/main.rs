@@ -61,5 +61,6 @@ fn run(line: &CommandLine, started: Instant) -> Result<(), Failure> {
         Verb::Shot(args) => verbs::shot::run(args, output),
         Verb::Bench(args) => verbs::bench::run(args, output),
         Verb::Trade(args) => verbs::trade::run(args, output),
+        Verb::Trajectory(args) => verbs::trajectory::run(args, output),
     }
 }

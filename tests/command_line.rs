@@ -2,7 +2,7 @@
 
 use std::process::{Command, Output};
 
-const VERBS: [&str; 9] = ["fly", "bake", "info", "verify", "height", "sight", "shot", "bench", "trade"];
+const VERBS: [&str; 10] = ["fly", "bake", "info", "verify", "height", "sight", "trajectory", "shot", "bench", "trade"];
 
 /// A folder that is nowhere.
 const NO_WORLD: &str = "no/such/place.world";
@@ -53,7 +53,7 @@ fn help_and_version_go_to_stdout() {
 #[test]
 fn verbs_that_do_not_exist_yet_are_neither_listed_nor_taken() {
     let help = stdout(&poligon(&["--help"]));
-    for verb in ["trajectory", "simulate", "scenario", "instructor", "replay", "serve"] {
+    for verb in ["simulate", "scenario", "instructor", "replay", "serve"] {
         assert!(!help.contains(verb), "{verb} is listed");
         assert_refused(&[verb], 2, &["unrecognized subcommand", verb]);
     }

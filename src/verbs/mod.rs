@@ -11,4 +11,5 @@ pub mod shot;
 pub mod sight;
 pub mod simulate;
 pub mod trade;
+pub mod trajectory;
 pub mod verify;
