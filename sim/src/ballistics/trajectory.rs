@@ -7,7 +7,8 @@
 //!
 //! What ends a shot first: `shot.until`, any of `run.stop`, `run.seconds`. With none of them it is the ground of
 //! `run.world`; without a world the muzzle's altitude on the way down, or, for a shot that does not climb at first, the
-//! altitude 0. In any case it ends after an hour (event `time`) or 12 km below both the muzzle and altitude 0 (event `floor`).
+//! altitude 0. Without `run.seconds` it ends in any case after an hour (event `time`) or 12 km below both the muzzle and
+//! altitude 0 (event `floor`).
 //! A muzzle in or under the ground, where ground ends a shot, ends it at once.
 
 use super::column::{Column, End, IN_FILE, NAMES, Relation};
@@ -22,7 +23,7 @@ use crate::file::FileError;
 use crate::integrate::Before;
 use std::fmt;
 
-/// Longest flight, seconds.
+/// Longest flight where a case gives none, seconds.
 pub const LONGEST_S: f64 = 3_600.0;
 /// How far below muzzle and altitude 0 a shot is followed, metres.
 pub const FLOOR_M: f64 = 12_000.0;
@@ -183,7 +184,7 @@ impl<'a> Flight<'a> {
             ends,
             every,
             longest_s: case.run.seconds.unwrap_or(LONGEST_S),
-            floor_m: muzzle_m.min(0.0) - FLOOR_M,
+            floor_m: if case.run.seconds.is_some() { f64::NEG_INFINITY } else { muzzle_m.min(0.0) - FLOOR_M },
             dt_s: case.run.dt_s.unwrap_or(STEP_S),
             start,
         })
