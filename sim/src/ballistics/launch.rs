@@ -181,7 +181,7 @@ fn zero_rad(
         let next = high - (high_m * (high - low) / (high_m - low_m)).clamp(-0.3, 0.3);
         (low, low_m) = (high, high_m);
         high = next;
-        if !(high.abs() < 1.4) {
+        if high.is_nan() || high.abs() > 1.4 {
             return Err(short());
         }
     }

@@ -372,7 +372,9 @@ impl<'a> Flight<'a> {
                 }
             };
             let y = if cut_s < last_s { self.at(step, cut_s)? } else { *last };
-            rows.push(self.row(step.from_s + cut_s, &y, ""));
+            // A multiple of a time is printed as that, without the rounding of the sum.
+            let t_s = if matches!(self.every, Every::Seconds(_)) { target } else { step.from_s + cut_s };
+            rows.push(self.row(t_s, &y, ""));
             if rows.len() > MOST_ROWS {
                 return Err(TrajectoryError::TooMuch { what: "rows", most: MOST_ROWS as f64, t_s: step.from_s });
             }
