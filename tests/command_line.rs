@@ -130,7 +130,7 @@ fn what_cannot_be_done_ends_with_1_also_with_json() {
 
 #[test]
 fn a_file_of_points_is_read_to_its_line() {
-    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("points_with_a_gap.csv");
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("points_with_a_gap.csv");
     std::fs::write(&path, "x_m,z_m\n1,2\n3\n").unwrap();
     let path = path.to_str().unwrap();
     assert_refused(&["height", NO_WORLD, "--points", path], 1, &[path, "expected 2 values on line 3, found 1"]);
