@@ -37,6 +37,8 @@ pub enum Verb {
     Height(HeightArgs),
     /// Whether two points see each other.
     Sight(SightArgs),
+    /// Fly a body from files and write its flight as CSV.
+    Simulate(SimulateArgs),
     /// Fly a shell or a bomb, as CSV.
     Trajectory(TrajectoryArgs),
     /// Take one picture.
@@ -201,6 +203,27 @@ pub struct SightArgs {
     pub to: Place,
 }
 
+/// `poligon simulate`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "docs/simulate.md describes the files. Without --out and --json the rows go to stdout. A file that cannot be \
+                        used ends\nwith exit status 2, a flight that fails with 1; its rows up to there are written."
+)]
+pub struct SimulateArgs {
+    /// The body: masses, controls, coefficients, thrusts, DAVE-ML files.
+    #[arg(long, value_name = "M.toml")]
+    pub model: PathBuf,
+    /// What surrounds it: the Earth, the air, where it starts, how it is stepped.
+    #[arg(long, value_name = "C.toml")]
+    pub case: PathBuf,
+    /// What the controls do, over time.
+    #[arg(long, value_name = "I.csv")]
+    pub inputs: Option<PathBuf>,
+    /// The rows, as CSV.
+    #[arg(long, value_name = "O.csv")]
+    pub out: Option<PathBuf>,
+}
+
 /// `poligon trajectory`
 #[derive(Debug, Args)]
 #[command(
@@ -320,7 +343,7 @@ mod tests {
         assert_eq!(refused("fly --eye 91,0,0"), ErrorKind::ValueValidation);
         assert_eq!(refused("fly --frames 0"), ErrorKind::ValueValidation);
         assert_eq!(refused("fly --quality best"), ErrorKind::InvalidValue);
-        for verb in ["trajectory", "simulate", "scenario", "instructor", "replay", "serve"] {
+        for verb in ["scenario", "instructor", "replay", "serve"] {
             assert_eq!(refused(verb), ErrorKind::InvalidSubcommand);
         }
     }

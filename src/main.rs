@@ -57,6 +57,7 @@ fn run(line: &CommandLine, started: Instant) -> Result<(), Failure> {
         Verb::Verify(args) => verbs::verify::run(args, output),
         Verb::Height(args) => verbs::height::run(args, output),
         Verb::Sight(args) => verbs::sight::run(args, output),
+        Verb::Simulate(args) => verbs::simulate::run(args, output),
         Verb::Shot(args) => verbs::shot::run(args, output),
         Verb::Bench(args) => verbs::bench::run(args, output),
         Verb::Trade(args) => verbs::trade::run(args, output),

@@ -8,6 +8,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use std::fmt::{self, Write as _};
 use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
 
 /// Longest list that a table shows whole; `--json` has all of it.
 pub const SHOWN_ROWS: usize = 1000;
@@ -39,6 +40,22 @@ impl Output {
             _ => Ok(()),
         }
     }
+}
+
+/// Writes a file beside its place and renames it into it, so that a reader finds a whole file or what was there before.
+///
+/// # Errors
+/// [`Failure::Failed`] if it cannot be written.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let failed = |error: io::Error| Failure::while_doing(format_args!("writing {}", path.display()), error);
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".part");
+    let beside = PathBuf::from(beside);
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder).map_err(failed)?;
+    }
+    std::fs::write(&beside, bytes).map_err(failed)?;
+    std::fs::rename(&beside, path).map_err(failed)
 }
 
 /// Tells a person something on stderr. That no one can be told is no reason to stop.

@@ -15,7 +15,7 @@ pub mod window;
 use crate::failure::Failure;
 use crate::output;
 use crate::report;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use visual::GpuError;
 
 /// A device's error as a verb's.
@@ -23,18 +23,10 @@ pub fn device_failed(error: GpuError) -> Failure {
     Failure::while_doing("drawing", error)
 }
 
-/// Writes a report as JSON beside its place and renames it into it, so that a reader finds a whole report or none.
+/// Writes a report as JSON.
 ///
 /// # Errors
 /// [`Failure::Failed`] if it cannot be written.
 pub fn write_report(path: &Path, report: &report::Fly) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| Failure::while_doing(format_args!("writing {}", path.display()), error);
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    let beside = PathBuf::from(beside);
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder).map_err(failed)?;
-    }
-    std::fs::write(&beside, format!("{:#}\n", output::to_value(report)?)).map_err(failed)?;
-    std::fs::rename(&beside, path).map_err(failed)
+    output::write_whole(path, format!("{:#}\n", output::to_value(report)?).as_bytes())
 }

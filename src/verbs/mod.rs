@@ -9,6 +9,7 @@ pub mod height;
 pub mod info;
 pub mod shot;
 pub mod sight;
+pub mod simulate;
 pub mod trade;
 pub mod trajectory;
 pub mod verify;

@@ -10,7 +10,7 @@
 
 use super::chords::{self, Piece};
 use super::path::StepPath;
-use super::target::{Target, TargetImpact, target_impact};
+use super::targets::{Target, TargetImpact, target_impact};
 use crate::snapshot::StableId;
 use glam::DVec3;
 use terrain::Area;

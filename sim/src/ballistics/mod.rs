@@ -19,6 +19,6 @@ mod observer;
 pub mod path;
 pub mod projectile;
 pub mod shape;
-pub mod target;
+pub mod targets;
 pub mod trajectory;
 pub mod world_ground;

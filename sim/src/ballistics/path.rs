@@ -106,7 +106,8 @@ impl StepPath {
 
     /// The fraction at which the path passes a point of its chord, for a path that only goes forward along it.
     ///
-    /// Newton's steps, each halved into the bracket where it leaves it: 60 of them end in any case.
+    /// Newton's steps, each halved into the bracket where it leaves it, until one is below 0.1 nm along the chord: they
+    /// double the digits, and far from the origin places have no more. 60 of them end in any case.
     pub(super) fn fraction_abreast(&self, point_m: DVec3) -> f64 {
         let (along, ..) = self.chord_and_bends();
         let squared = along.length_squared();
@@ -124,10 +125,11 @@ impl StepPath {
             }
             let newton = s + behind / (self.velocity_mps(s).dot(along) * self.step_s);
             let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
-            if (next - s).abs() <= f64::EPSILON {
-                return next;
-            }
+            let moved_squared = (next - s) * (next - s) * squared;
             s = next;
+            if moved_squared <= 1e-20 {
+                break;
+            }
         }
         s
     }
@@ -232,6 +234,10 @@ mod tests {
         assert!(brakes.bulge_m() < 1e-15 && brakes.deviation_m() > 0.2);
         let turns_back = StepPath { to_m: along, to_mps: along * -700.0, ..brakes };
         assert!(turns_back.bulge_m() > 1.0, "overshoots its end by metres");
+        // Always forward by both end velocities, and yet 60 % beyond its end halfway.
+        let overshoots = StepPath { from_mps: along * 9.0, to_mps: DVec3::ZERO, to_m: along, step_s: 1.0, ..brakes };
+        let beyond = overshoots.position_m(0.5).distance(along);
+        assert!(beyond > 0.6 && overshoots.bulge_m() >= beyond);
         let middle = DVec3::new(3.0, 0.0, 0.0);
         assert!(brakes.position_m(brakes.fraction_abreast(middle)).distance(middle) < 1e-14);
     }

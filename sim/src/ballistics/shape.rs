@@ -301,4 +301,4 @@ fn in_round(start: DVec3, along: DVec3, radius_m: f64) -> Option<(f64, f64)> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -360,7 +360,8 @@ impl InitialFile {
         }
         Ok(Initial {
             place,
-            flat_m: metres.then(|| {
+            // Without a place a flat frame starts at its origin.
+            flat_m: (flat && self.lat_deg.is_none() && self.lon_deg.is_none()).then(|| {
                 DVec3::new(self.north_m.unwrap_or(0.0), self.east_m.unwrap_or(0.0), -self.altitude_m.unwrap_or(0.0))
             }),
             velocity,

@@ -1,7 +1,7 @@
 //! Content MathML to an expression tree.
 //!
-//! Invariant: a tree is at most as deep as the document ([`super::xml::MAX_DEPTH`]), so recursion over it is bounded;
-//! every operation has as many operands as it needs. A truth is 1, a falsehood 0; any number but 0 and NaN is true.
+//! Invariant: a tree is at most three times as deep as the document may be ([`super::xml::MAX_DEPTH`]), so recursion over
+//! it is bounded; every operation has as many operands as it needs. A truth is 1, a falsehood 0; any number but 0 and NaN is true.
 //!
 //! Source: W3C MathML 2.0, chapter 4; AIAA S-119 for `atan2`.
 
@@ -19,8 +19,8 @@ pub enum Expression {
     Variable(usize),
     /// A function of one operand.
     Unary(Unary, Box<Expression>),
-    /// A function of two operands.
-    Binary(Binary, Box<Expression>, Box<Expression>),
+    /// One or more operands, joined from left to right; comparisons join by holding for each neighbouring pair.
+    Chain(Binary, Vec<Expression>),
     /// The value of the first piece whose condition holds, else the last; NaN where there is neither.
     Piecewise(Vec<Piece>, Box<Expression>),
 }
@@ -41,10 +41,7 @@ impl Expression {
             Self::Number(_) => {}
             Self::Variable(index) => visit(*index),
             Self::Unary(_, operand) => operand.each_variable(visit),
-            Self::Binary(_, left, right) => {
-                left.each_variable(visit);
-                right.each_variable(visit);
-            }
+            Self::Chain(_, operands) => operands.iter().for_each(|operand| operand.each_variable(visit)),
             Self::Piecewise(pieces, otherwise) => {
                 for piece in pieces {
                     piece.value.each_variable(visit);
@@ -90,7 +87,9 @@ fn number(element: &Element<'_, '_>) -> Result<Expression, DavemlError> {
         Some("e-notation") => {
             let parts = element.texts();
             let joined = parts.iter().map(|part| part.trim()).filter(|part| !part.is_empty()).collect::<Vec<_>>();
-            return Ok(Expression::Number(xml::number(&joined.join("e")).ok_or_else(|| element.no_number(&joined.join(" ")))?));
+            return Ok(Expression::Number(
+                xml::number(&joined.join("e")).ok_or_else(|| element.no_number(&joined.join(" ")))?,
+            ));
         }
         Some(kind) => return Err(element.unsupported_what(format!("<cn type=\"{kind}\">"))),
     }
@@ -203,31 +202,28 @@ fn csymbol(element: &Element<'_, '_>) -> Result<&'static str, DavemlError> {
 }
 
 fn binary(kind: Binary, left: Expression, right: Expression) -> Expression {
-    Expression::Binary(kind, Box::new(left), Box::new(right))
+    Expression::Chain(kind, vec![left, right])
 }
 
-/// Left to right, `empty` for no operand. A balanced tree would be shallower but add in another order; so long sums are
-/// bounded instead.
+/// Any number of operands; `empty` is the value of none.
 fn chain(
     kind: Binary,
     empty: Option<f64>,
     operands: Vec<Expression>,
     element: &Element<'_, '_>,
 ) -> Result<Expression, DavemlError> {
-    if operands.len() > xml::MAX_DEPTH {
-        return Err(element.expected(&format!("at most {} operands", xml::MAX_DEPTH)));
+    match (operands.is_empty(), empty) {
+        (true, None) => Err(element.expected("an operand")),
+        (true, Some(value)) => Ok(Expression::Number(value)),
+        (false, _) => Ok(Expression::Chain(kind, operands)),
     }
-    let whole = operands.into_iter().reduce(|left, right| binary(kind, left, right));
-    whole.or(empty.map(Expression::Number)).ok_or_else(|| element.expected("an operand"))
 }
 
-/// `a < b < c` holds if each neighbouring pair does.
 fn compare(kind: Binary, operands: Vec<Expression>, element: &Element<'_, '_>) -> Result<Expression, DavemlError> {
-    let pairs: Vec<_> = operands.windows(2).map(|pair| binary(kind, pair[0].clone(), pair[1].clone())).collect();
-    if pairs.is_empty() {
+    if operands.len() < 2 {
         return Err(element.expected("at least two operands to compare"));
     }
-    chain(Binary::And, None, pairs, element)
+    Ok(Expression::Chain(kind, operands))
 }
 
 fn take<const N: usize>(

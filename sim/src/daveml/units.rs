@@ -102,8 +102,10 @@ fn parse(units: &str) -> Option<(f64, Dimension)> {
         let mut rest = part;
         while !rest.is_empty() {
             // The longest symbol: `nmi` is not `n`, `m`, `i`.
-            let (symbol, unit, powers) =
-                SYMBOLS.iter().filter(|(symbol, ..)| rest.starts_with(symbol)).max_by_key(|(symbol, ..)| symbol.len())?;
+            let (symbol, unit, powers) = SYMBOLS
+                .iter()
+                .filter(|(symbol, ..)| rest.starts_with(symbol))
+                .max_by_key(|(symbol, ..)| symbol.len())?;
             rest = &rest[symbol.len()..];
             let digits = rest.bytes().take_while(u8::is_ascii_digit).count();
             let power = if digits == 0 { 1 } else { rest[..digits].parse().ok().filter(|p| (1..=9).contains(p))? };

@@ -113,17 +113,19 @@ impl Piece for Span<'_> {
     }
 
     fn may_touch(&self) -> bool {
-        near(&self.path, self.shape.radius_m())
+        near(self.path.from_m, self.path.to_m, self.path.bulge_m(), self.shape.radius_m())
     }
 }
 
-/// Whether the path may come within a radius of the origin. A millionth more hides the roundings.
-fn near(path: &StepPath, radius_m: f64) -> bool {
-    let along = path.to_m - path.from_m;
+/// Whether a path with this chord, and never farther from it than `off_m`, may come within a radius of the origin.
+/// A millionth more hides the roundings.
+#[inline]
+fn near(from_m: DVec3, to_m: DVec3, off_m: f64, radius_m: f64) -> bool {
+    let along = to_m - from_m;
     let squared = along.length_squared();
-    let nearest = if squared > 0.0 { (-path.from_m.dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    let reach_m = (radius_m + path.bulge_m()) * (1.0 + 1e-6);
-    (path.from_m + along * nearest).length_squared() <= reach_m * reach_m
+    let nearest = if squared > 0.0 { (-from_m.dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    let reach_m = (radius_m + off_m) * (1.0 + 1e-6);
+    (from_m + along * nearest).length_squared() <= reach_m * reach_m
 }
 
 /// The first target that the path strikes; of several at the same instant the one with the lowest id. `own` is left out.
@@ -134,8 +136,14 @@ pub fn target_impact(path: &StepPath, targets: &[Target], own: Option<StableId>)
     if !path.is_sound() {
         return None;
     }
+    // A target's own motion is straight, so the relative path is off its chord by the same, whatever the target.
+    let off_m = path.deviation_m();
     let others = targets.iter().filter(|target| Some(target.id) != own);
-    let strikes = others.filter_map(|target| strike(path, target));
+    let close = others.filter(|target| {
+        let (from_m, to_m) = (path.from_m - target.from.position_m, path.to_m - target.to.position_m);
+        near(from_m, to_m, off_m, target.shape.radius_m())
+    });
+    let strikes = close.filter_map(|target| strike(path, target));
     strikes.reduce(|first, other| {
         let earlier = (other.fraction, other.id) < (first.fraction, first.id);
         if earlier { other } else { first }
@@ -153,13 +161,12 @@ fn strike(path: &StepPath, target: &Target) -> Option<TargetImpact> {
         to_mps: path.to_mps - velocity,
         step_s: path.step_s,
     };
-    // In world axes, before anything is turned: most targets end here.
-    if !near(&relative, target.shape.radius_m()) {
-        return None;
-    }
     let first = from.attitude.normalize();
     let back = first.conjugate();
     let last = back * to.attitude.normalize();
+    if !first.is_normalized() || !last.is_normalized() {
+        return None;
+    }
     let turn = if last.w < 0.0 { -last } else { last }.to_scaled_axis();
     let seen = StepPath {
         from_m: back * relative.from_m,
@@ -168,7 +175,7 @@ fn strike(path: &StepPath, target: &Target) -> Option<TargetImpact> {
         to_mps: back * relative.to_mps,
         step_s: path.step_s,
     };
-    if !seen.is_sound() || !turn.is_finite() {
+    if !seen.is_sound() {
         return None;
     }
     let whole = Span { path: seen, turn, shape: &target.shape, from: 0.0, to: 1.0 };

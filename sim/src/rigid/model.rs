@@ -1,0 +1,484 @@
+//! The checked model of a rigid body: `M.toml`.
+//!
+//! Points are metres from the reference point, body axes (forward, right, down): the centre of gravity, the point that
+//! moments are about, the points where thrusts act; what is left out is the reference point itself. The inertia tensor
+//! is about the centre of gravity, its products with the sign they have in the tensor.
+//!
+//! Invariant others rely on: mass and inertia are those of a body that can exist, and every name is a slot.
+
+use super::aero::{Axes, BoundTable, COEFFICIENTS, Coefficient, Factors, Flow, MOST_TABLES, Tables, Term, Thrust};
+use super::links::{self, Found, LinkMemory, Links, Source};
+use super::model_file::{AxesFile, ControlFile, ModelFile, OutsideFile, ThrustFile};
+use super::quantity::{MOST_CONTROLS, QUANTITIES, Quantity, SLOTS, without_unit};
+use crate::case::Setting;
+use crate::daveml::{Document, si_factor};
+use crate::file::{self, FileError};
+use crate::table::Table;
+use glam::{DMat3, DVec3};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A control of a model, in the unit that its name ends with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Control {
+    /// Its name.
+    pub name: String,
+    /// Least value.
+    pub min: f64,
+    /// Greatest value.
+    pub max: f64,
+    /// Value before any input.
+    pub initial: f64,
+}
+
+/// The course that the cross-track counts from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Course {
+    /// Nothing asks for the cross-track.
+    None,
+    /// A fixed one, radians from north.
+    Fixed(f64),
+    /// A control, by its place, and what turns it into radians.
+    Control(usize, f64),
+}
+
+/// A rigid body and what the air and its engines do to it.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// The file it comes from.
+    pub file: PathBuf,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Inertia tensor about the centre of gravity, kg m2.
+    pub inertia_kgm2: DMat3,
+    /// Its inverse.
+    pub inverse_inertia: DMat3,
+    /// Centre of gravity.
+    pub cg_m: DVec3,
+    /// Never-exceed speed, if the model tells it.
+    pub never_exceed_mps: Option<f64>,
+    /// Reference area, m2.
+    pub area_m2: f64,
+    /// Reference span, metres.
+    pub span_m: f64,
+    /// Reference chord, metres.
+    pub chord_m: f64,
+    /// The point that coefficients of moments are about.
+    pub moment_point_m: DVec3,
+    /// Axes of CD, CY, CL.
+    pub axes: Axes,
+    /// Least speed in the hats of the rates, m/s.
+    pub min_speed_mps: f64,
+    /// Controls, by name.
+    pub controls: Vec<Control>,
+    terms: Vec<Term>,
+    thrusts: Vec<Thrust>,
+    tables: Tables,
+    sources: Vec<Source>,
+    links: Links,
+    uses: [bool; QUANTITIES],
+    course: Course,
+    refuses: bool,
+}
+
+/// Force and moment about the centre of gravity, body axes, without gravity.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Loads {
+    /// Newtons.
+    pub force_n: DVec3,
+    /// Newton metres.
+    pub moment_nm: DVec3,
+}
+
+impl Model {
+    /// Reads and checks a model, and the DAVE-ML files that it names.
+    ///
+    /// # Errors
+    /// [`FileError`] names the file and the key, what was expected and what was found.
+    pub fn read(path: &Path) -> Result<Self, FileError> {
+        Self::from_text(path, &file::text(path)?)
+    }
+
+    /// The same of a text; other files are looked for beside `path`.
+    ///
+    /// # Errors
+    /// [`FileError`] names the file and the key, what was expected and what was found.
+    pub fn from_text(path: &Path, text: &str) -> Result<Self, FileError> {
+        let file: ModelFile = file::toml_text(path, text)?;
+        let sources = sources(path, &file)?;
+        let constants = links::constants(&sources)?;
+        let here = |why: String| FileError::new(path, why);
+        let controls = controls(&file.controls).map_err(here)?;
+
+        let body = match (&file.body, constants.mass_kg, constants.inertia_kgm2) {
+            (Some(body), ..) => (body.mass_kg, tensor(body.inertia_kgm2), DVec3::from_array(body.cg_m)),
+            (None, Some(mass_kg), Some(inertia)) => (mass_kg, inertia, constants.cg_m.unwrap_or_default()),
+            _ => {
+                return Err(here(
+                    "body: expected mass_kg and inertia_kgm2, found neither them nor a DAVE-ML file with both"
+                        .to_owned(),
+                ));
+            }
+        };
+        let (mass_kg, inertia_kgm2, cg_m) = body;
+        check_body(mass_kg, inertia_kgm2).map_err(here)?;
+
+        let (tables, table_names) = bound_tables(&file, &controls).map_err(here)?;
+        let terms = terms(&file, &controls, &table_names).map_err(here)?;
+        let thrusts = thrusts(&file.thrust, &controls, &table_names).map_err(here)?;
+        let links = Links::bind(&sources, &controls, &[])?;
+        let (area, span, chord) = (
+            file.reference.area_m2.or(constants.area_m2),
+            file.reference.span_m.or(constants.span_m),
+            file.reference.chord_m.or(constants.chord_m),
+        );
+        for (key, length) in [("area_m2", area), ("span_m", span), ("chord_m", chord)] {
+            if length.is_some_and(|length| !(length > 0.0 && length < 1e6)) {
+                return Err(here(format!(
+                    "reference.{key}: expected a number above 0, found {}",
+                    length.unwrap_or(0.0)
+                )));
+            }
+            if length.is_none() && !(terms.is_empty() && links.is_empty()) && needs(key, &terms, &file) {
+                return Err(here(format!("reference.{key}: expected a number above 0, found none")));
+            }
+        }
+        let min_speed_mps = file.aero.min_speed_mps.unwrap_or(1e-3);
+        if !(min_speed_mps > 0.0 && min_speed_mps < 1e4) {
+            return Err(here(format!("aero.min_speed_mps: expected a number above 0, found {min_speed_mps}")));
+        }
+        let never_exceed_mps = file.body.as_ref().and_then(|body| body.never_exceed_mps);
+        if let Some(found) = never_exceed_mps.filter(|v| !(*v > 0.0 && *v < 1e5)) {
+            return Err(here(format!("body.never_exceed_mps: expected a number above 0, found {found}")));
+        }
+        let mut model = Self {
+            file: path.to_owned(),
+            mass_kg,
+            inertia_kgm2,
+            inverse_inertia: inertia_kgm2.inverse(),
+            cg_m,
+            never_exceed_mps,
+            area_m2: area.unwrap_or(1.0),
+            span_m: span.unwrap_or(1.0),
+            chord_m: chord.unwrap_or(1.0),
+            moment_point_m: DVec3::from_array(file.reference.moment_point_m.unwrap_or_default()),
+            axes: match file.aero.axes {
+                AxesFile::Wind => Axes::Wind,
+                AxesFile::Stability => Axes::Stability,
+                AxesFile::Body => Axes::Body,
+            },
+            min_speed_mps,
+            controls,
+            terms,
+            thrusts,
+            tables,
+            sources,
+            links,
+            uses: [false; QUANTITIES],
+            course: Course::None,
+            refuses: false,
+        };
+        model.refuses = model.tables.0.iter().any(|bound| bound.refuse_outside);
+        model.note_uses();
+        Ok(model)
+    }
+
+    /// The same model with values for variables of its DAVE-ML files, SI, that go before all others.
+    ///
+    /// # Errors
+    /// [`FileError`] if no file has a variable of such a name.
+    pub fn with_found(&self, found: &[Found]) -> Result<Self, FileError> {
+        let mut model = self.clone();
+        model.links = Links::bind(&self.sources, &self.controls, found)?;
+        model.note_uses();
+        Ok(model)
+    }
+
+    /// Whether a DAVE-ML file of the model has such a variable.
+    pub fn has_variable(&self, name: &str) -> bool {
+        self.sources.iter().any(|source| source.document.variable(name).is_ok())
+    }
+
+    /// The place of a control.
+    pub fn control(&self, name: &str) -> Option<usize> {
+        self.controls.iter().position(|control| control.name == name)
+    }
+
+    /// Values of all controls before any input.
+    pub fn initial_controls(&self) -> Vec<f64> {
+        self.controls.iter().map(|control| control.initial).collect()
+    }
+
+    /// Whether anything depends on a quantity.
+    #[inline]
+    pub fn uses(&self, quantity: Quantity) -> bool {
+        self.uses[quantity.slot()]
+    }
+
+    /// Memory for [`Self::loads`], one a thread.
+    pub fn memory(&self) -> LinkMemory {
+        self.links.memory()
+    }
+
+    fn note_uses(&mut self) {
+        let factors = self.terms.iter().map(|t| &t.of).chain(self.thrusts.iter().map(|t| &t.of));
+        let slots = factors.flat_map(|of| of.times.iter().copied());
+        let of_tables = self.tables.0.iter().flat_map(|bound| bound.slots.iter().copied());
+        let mut uses = [false; QUANTITIES];
+        for slot in slots.chain(of_tables).chain(self.links.quantities.iter().copied()).filter(|s| *s < QUANTITIES) {
+            uses[slot] = true;
+        }
+        self.uses = uses;
+        self.course = if self.uses(Quantity::CrossTrackM) { self.commanded_course() } else { Course::None };
+    }
+
+    /// The course that the autopilot's files are given: by a control, or by what the model sets.
+    fn commanded_course(&self) -> Course {
+        const NAME: &str = "trueBaseCourseCommand";
+        for (place, control) in self.controls.iter().enumerate() {
+            if let Some((_, si)) = without_unit(&control.name).filter(|(stem, _)| stem.eq_ignore_ascii_case(NAME)) {
+                return Course::Control(place, si);
+            }
+        }
+        let fixed = self.sources.iter().find_map(|source| {
+            let variable = source.document.variable(NAME).ok()?;
+            let set = source.set.iter().find(|(name, _)| **name == variable.id || name.eq_ignore_ascii_case(NAME));
+            match set {
+                Some((_, Setting::Number(value))) => Some(value * si_factor(&variable.units)?),
+                _ => variable.initial.map(|value| value * si_factor(&variable.units).unwrap_or(1.0)),
+            }
+        });
+        Course::Fixed(fixed.unwrap_or(0.0))
+    }
+
+    /// The course that the cross-track counts from.
+    #[inline]
+    pub fn course(&self) -> Course {
+        self.course
+    }
+
+    /// Force and moment at the flight's quantities, which stand in `slots` with the controls behind them.
+    ///
+    /// `through_air` is the body's velocity through the air, forward, right, down.
+    #[inline]
+    pub fn loads(
+        &self,
+        slots: &mut [f64; SLOTS],
+        through_air: DVec3,
+        dynamic_pressure_pa: f64,
+        memory: &mut LinkMemory,
+    ) -> Loads {
+        let tables = self.tables.values(slots);
+        let mut c = [0.0; COEFFICIENTS];
+        for term in &self.terms {
+            c[term.to] += term.of.product(slots, &tables);
+        }
+        let mut loads = Loads::default();
+        if !self.links.is_empty() {
+            self.links.run(slots, memory, &mut c);
+            (loads.force_n, loads.moment_nm) = self.links.thrust(slots);
+        }
+        let pressed = dynamic_pressure_pa * self.area_m2;
+        let force = Flow::of(through_air).force(self.axes, &c) * pressed;
+        let [.., roll, pitch, yaw, _] = c;
+        let moment = DVec3::new(roll * self.span_m, pitch * self.chord_m, yaw * self.span_m) * pressed;
+        loads.force_n += force;
+        loads.moment_nm += moment + (self.moment_point_m - self.cg_m).cross(force);
+        for thrust in &self.thrusts {
+            let force = thrust.force_n * thrust.of.product(slots, &tables);
+            loads.force_n += force;
+            loads.moment_nm += (thrust.at_m - self.cg_m).cross(force);
+        }
+        loads
+    }
+
+    /// Whether a table of the model refuses arguments outside it.
+    #[inline]
+    pub fn refuses(&self) -> bool {
+        self.refuses
+    }
+
+    /// The first argument outside a table that refuses it, as a sentence.
+    pub fn refused(&self, slots: &[f64; SLOTS]) -> Option<String> {
+        self.tables.refused(slots)
+    }
+}
+
+/// Whether a reference length counts for any coefficient of the file.
+fn needs(key: &str, terms: &[Term], file: &ModelFile) -> bool {
+    let moment = |c: Coefficient| terms.iter().any(|t| t.to == c as usize);
+    let hat = |name: &str| {
+        let in_terms = file.aero.term.iter().flat_map(|t| &t.times);
+        in_terms.chain(file.table.values().flat_map(|t| &t.axes)).any(|used| used == name)
+    };
+    match key {
+        "area_m2" => true,
+        "span_m" => moment(Coefficient::Cl) || moment(Coefficient::Cn) || hat("p_hat") || hat("r_hat"),
+        _ => moment(Coefficient::Cm) || hat("q_hat"),
+    }
+}
+
+fn sources(path: &Path, file: &ModelFile) -> Result<Vec<Source>, FileError> {
+    let one = |daveml: &super::model_file::DavemlFile| {
+        let file = path.parent().map_or_else(|| daveml.file.clone(), |folder| folder.join(&daveml.file));
+        let document = Document::parse(&file::text(&file)?).map_err(|error| FileError::new(&file, error))?;
+        Ok(Source { file, document: Arc::new(document), set: daveml.set.clone() })
+    };
+    file.daveml.iter().map(one).collect()
+}
+
+fn controls(file: &BTreeMap<String, ControlFile>) -> Result<Vec<Control>, String> {
+    if file.len() > MOST_CONTROLS {
+        return Err(format!("controls: expected at most {MOST_CONTROLS}, found {}", file.len()));
+    }
+    let one = |(name, control): (&String, &ControlFile)| {
+        if without_unit(name).is_none() {
+            return Err(format!("controls.{name}: expected a name that ends in _rad, _deg, _norm or another unit"));
+        }
+        if Quantity::named(name).is_some() {
+            return Err(format!("controls.{name}: expected another name, this is a quantity of the flight"));
+        }
+        let ControlFile { min, max, initial } = *control;
+        if !(min <= initial && initial <= max) {
+            return Err(format!("controls.{name}: expected min <= initial <= max, found {min}, {initial}, {max}"));
+        }
+        Ok(Control { name: name.clone(), min, max, initial })
+    };
+    file.iter().map(one).collect()
+}
+
+fn tensor(rows: [[f64; 3]; 3]) -> DMat3 {
+    DMat3::from_cols_array_2d(&rows).transpose()
+}
+
+/// Checks that a body of this mass and inertia can exist.
+///
+/// The second moments of mass are half the trace less the tensor; no moment of a body can be negative, so they must not
+/// be, whatever the axes. That says too that no principal moment is greater than the sum of the two others.
+fn check_body(mass_kg: f64, inertia: DMat3) -> Result<(), String> {
+    if !(mass_kg > 0.0 && mass_kg < 1e12) {
+        return Err(format!("body.mass_kg: expected a number above 0, found {mass_kg}"));
+    }
+    let i = |row: usize, column: usize| inertia.col(column)[row];
+    let trace = i(0, 0) + i(1, 1) + i(2, 2);
+    let asymmetry = (i(0, 1) - i(1, 0)).abs() + (i(0, 2) - i(2, 0)).abs() + (i(1, 2) - i(2, 1)).abs();
+    if asymmetry > 1e-9 * trace.abs() {
+        return Err("body.inertia_kgm2: expected a symmetric tensor".to_owned());
+    }
+    // A tensor printed with nine digits may be off by that much.
+    let slack = 1e-9 * trace;
+    let positive = |m: DMat3, least: f64| {
+        let e = |row: usize, column: usize| m.col(column)[row];
+        let pair = |a: usize, b: usize| e(a, a) * e(b, b) - e(a, b) * e(b, a) >= least * trace;
+        (0..3).all(|a| e(a, a) >= least)
+            && pair(0, 1)
+            && pair(0, 2)
+            && pair(1, 2)
+            && m.determinant() >= least * trace * trace
+    };
+    if !(trace > 0.0 && positive(inertia, 1e-12 * trace)) {
+        return Err(format!(
+            "body.inertia_kgm2: expected positive principal moments, found the tensor singular or negative: {:?}",
+            inertia.to_cols_array_2d()
+        ));
+    }
+    if !positive(DMat3::from_diagonal(DVec3::splat(0.5 * trace)) - inertia, -slack) {
+        return Err(format!(
+            "body.inertia_kgm2: expected no principal moment above the sum of the others, found {:?}",
+            inertia.to_cols_array_2d()
+        ));
+    }
+    Ok(())
+}
+
+/// The slot of a name that a term or table multiplies with.
+fn slot(name: &str, controls: &[Control]) -> Option<usize> {
+    let of_control = || controls.iter().position(|c| c.name == name).map(|place| QUANTITIES + place);
+    Quantity::named(name).map(Quantity::slot).or_else(of_control)
+}
+
+fn slots(key: &str, names: &[String], controls: &[Control]) -> Result<Vec<usize>, String> {
+    let one = |name: &String| {
+        slot(name, controls).ok_or_else(|| {
+            let known: Vec<&str> =
+                super::quantity::ALL.iter().map(|q| q.1).chain(controls.iter().map(|c| c.name.as_str())).collect();
+            format!("{key}: expected one of {}, found {name}", known.join(", "))
+        })
+    };
+    names.iter().map(one).collect()
+}
+
+fn bound_tables(file: &ModelFile, controls: &[Control]) -> Result<(Tables, Vec<String>), String> {
+    if file.table.len() > MOST_TABLES {
+        return Err(format!("table: expected at most {MOST_TABLES}, found {}", file.table.len()));
+    }
+    let mut all = Vec::new();
+    for (name, table) in &file.table {
+        let key = format!("table.{name}");
+        if table.axes.len() != table.breakpoints.len() {
+            let (axes, breakpoints) = (table.axes.len(), table.breakpoints.len());
+            return Err(format!("{key}.breakpoints: expected one list an axis, {axes}, found {breakpoints}"));
+        }
+        let built = Table::new(table.breakpoints.clone(), table.values.clone(), table.interpolation.into());
+        all.push(BoundTable {
+            name: name.clone(),
+            table: built.map_err(|error| format!("{key}: {error}"))?,
+            slots: slots(&format!("{key}.axes"), &table.axes, controls)?,
+            arguments: table.axes.clone(),
+            refuse_outside: table.outside == OutsideFile::Error,
+        });
+    }
+    let names = all.iter().map(|bound| bound.name.clone()).collect();
+    Ok((Tables(all), names))
+}
+
+fn factors(
+    key: &str,
+    value: f64,
+    table: Option<&String>,
+    times: &[String],
+    controls: &[Control],
+    tables: &[String],
+) -> Result<Factors, String> {
+    let place = |name: &String| {
+        let missing = || format!("{key}.table: expected one of [{}], found {name}", tables.join(", "));
+        tables.iter().position(|known| known == name).ok_or_else(missing)
+    };
+    Ok(Factors { value, table: table.map(place).transpose()?, times: slots(&format!("{key}.times"), times, controls)? })
+}
+
+fn terms(file: &ModelFile, controls: &[Control], tables: &[String]) -> Result<Vec<Term>, String> {
+    let mut all = Vec::new();
+    for (i, term) in file.aero.term.iter().enumerate() {
+        let key = format!("aero.term[{i}]");
+        let to = Coefficient::place(&term.to)
+            .ok_or_else(|| format!("{key}.to: expected one of {}, found {}", Coefficient::NAMES.join(", "), term.to))?;
+        if file.aero.axes == AxesFile::Body && matches!(term.to.as_str(), "CD" | "CL") {
+            return Err(format!("{key}.to: expected CX, CY or CZ in body axes, found {}", term.to));
+        }
+        if term.value.is_none() && term.table.is_none() {
+            return Err(format!("{key}: expected a value or a table, found neither"));
+        }
+        let value = term.value.unwrap_or(1.0);
+        all.push(Term { to, of: factors(&key, value, term.table.as_ref(), &term.times, controls, tables)? });
+    }
+    Ok(all)
+}
+
+fn thrusts(file: &[ThrustFile], controls: &[Control], tables: &[String]) -> Result<Vec<Thrust>, String> {
+    let mut all = Vec::new();
+    for (i, thrust) in file.iter().enumerate() {
+        let key = format!("thrust[{i}]");
+        if thrust.force_N.is_none() && thrust.table.is_none() {
+            return Err(format!("{key}: expected force_N or a table, found neither"));
+        }
+        all.push(Thrust {
+            // A table alone is newtons forward.
+            force_n: DVec3::from_array(thrust.force_N.unwrap_or([1.0, 0.0, 0.0])),
+            at_m: DVec3::from_array(thrust.at_m.unwrap_or_default()),
+            of: factors(&key, 1.0, thrust.table.as_ref(), &thrust.times, controls, tables)?,
+        });
+    }
+    Ok(all)
+}

@@ -1,0 +1,139 @@
+//! `M.toml` as it is written.
+
+use crate::case::Setting;
+use crate::table::Interpolation;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ModelFile {
+    pub body: Option<BodyFile>,
+    #[serde(default)]
+    pub reference: ReferenceFile,
+    #[serde(default)]
+    pub controls: BTreeMap<String, ControlFile>,
+    #[serde(default)]
+    pub aero: AeroFile,
+    #[serde(default)]
+    pub table: BTreeMap<String, TableFile>,
+    #[serde(default)]
+    pub thrust: Vec<ThrustFile>,
+    #[serde(default)]
+    pub daveml: Vec<DavemlFile>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BodyFile {
+    pub mass_kg: f64,
+    pub inertia_kgm2: [[f64; 3]; 3],
+    #[serde(default)]
+    pub cg_m: [f64; 3],
+    pub never_exceed_mps: Option<f64>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ReferenceFile {
+    pub area_m2: Option<f64>,
+    pub span_m: Option<f64>,
+    pub chord_m: Option<f64>,
+    pub moment_point_m: Option<[f64; 3]>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ControlFile {
+    pub min: f64,
+    pub max: f64,
+    #[serde(default)]
+    pub initial: f64,
+}
+
+#[derive(Deserialize, Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum AxesFile {
+    #[default]
+    Wind,
+    Stability,
+    Body,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AeroFile {
+    #[serde(default)]
+    pub axes: AxesFile,
+    pub min_speed_mps: Option<f64>,
+    #[serde(default)]
+    pub term: Vec<TermFile>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TermFile {
+    pub to: String,
+    pub value: Option<f64>,
+    pub table: Option<String>,
+    #[serde(default)]
+    pub times: Vec<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TableFile {
+    pub axes: Vec<String>,
+    pub breakpoints: Vec<Vec<f64>>,
+    pub values: Vec<f64>,
+    #[serde(default)]
+    pub interpolation: InterpolationFile,
+    #[serde(default)]
+    pub outside: OutsideFile,
+}
+
+#[derive(Deserialize, Default, Clone, Copy)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum InterpolationFile {
+    #[default]
+    Linear,
+    Pchip,
+}
+
+impl From<InterpolationFile> for Interpolation {
+    fn from(file: InterpolationFile) -> Self {
+        match file {
+            InterpolationFile::Linear => Self::Linear,
+            InterpolationFile::Pchip => Self::Pchip,
+        }
+    }
+}
+
+#[derive(Deserialize, Default, Clone, Copy, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum OutsideFile {
+    #[default]
+    Clamp,
+    Error,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case)]
+pub(super) struct ThrustFile {
+    pub force_N: Option<[f64; 3]>,
+    pub table: Option<String>,
+    #[serde(default)]
+    pub at_m: Option<[f64; 3]>,
+    #[serde(default)]
+    pub times: Vec<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DavemlFile {
+    pub file: PathBuf,
+    #[serde(default)]
+    pub set: BTreeMap<String, Setting>,
+}

@@ -1,0 +1,266 @@
+//! The equations of motion of a rigid body over the Earth.
+//!
+//! State: position and velocity over the rotating Earth in the planet's frame; attitude as a quaternion (w, x, y, z) from
+//! body axes to the frame; inertial angular velocity in body axes; and the cross-track, the integral of the velocity
+//! across the commanded course, for autopilots that follow one.
+//!
+//! dr = v; dv = R F / m + fall(r, v); dq = q (0, w - R' Omega) / 2; I dw = M - w x I w. Aerodynamic rates are the inertial
+//! ones less the Earth's rotation, not less the turn of the local axes: the air turns with the Earth.
+//!
+//! The quaternion is normalised after each step; inside a step only its direction counts.
+//!
+//! Source: B. L. Stevens, F. L. Lewis, Aircraft Control and Simulation, 2003, section 1.5 (oblate rotating Earth).
+
+use super::links::LinkMemory;
+use super::model::{Course, Loads, Model};
+use super::quantity::{QUANTITIES, Quantity, SLOTS};
+use crate::atmosphere::{AirSample, Atmosphere, SEA_LEVEL_DENSITY_KGPM3};
+use crate::integrate::Motion;
+use crate::planet::{Place, Planet, Shape};
+use crate::wind::Wind;
+use glam::{DMat3, DQuat, DVec3};
+use std::cell::RefCell;
+use std::sync::Arc;
+
+/// Numbers of a state.
+pub const N: usize = 14;
+
+/// A state, see the module: position, attitude, cross-track; velocity, rates.
+pub type State = [f64; N];
+
+/// A body in its surroundings, with its controls as they stand.
+#[derive(Debug, Clone)]
+pub struct RigidMotion {
+    /// The body.
+    pub model: Arc<Model>,
+    /// The Earth.
+    pub planet: Planet,
+    /// The air.
+    pub atmosphere: Atmosphere,
+    /// Its motion.
+    pub wind: Wind,
+    /// Controls, in their own units.
+    pub controls: Vec<f64>,
+    /// Velocity of a gust along body axes, m/s, held over a step.
+    pub gust_mps: DVec3,
+    memory: RefCell<LinkMemory>,
+    still: bool,
+}
+
+/// What is known of a state in flight.
+#[derive(Debug, Clone)]
+pub struct Sample {
+    /// Body axes to the frame's.
+    pub frame_from_body: DMat3,
+    /// Height above the surface, metres; 0 where nothing depends on it.
+    pub altitude_m: f64,
+    /// The air.
+    pub air: AirSample,
+    /// Velocity through the air, body axes, m/s.
+    pub through_air: DVec3,
+    /// Angular velocity against the rotating Earth, body axes, rad/s.
+    pub earth_rates: DVec3,
+    /// Velocity north, east, down; nil where nothing depends on it.
+    pub ned_mps: DVec3,
+    /// Force and moment without gravity.
+    pub loads: Loads,
+    /// Quantities and controls.
+    pub slots: [f64; SLOTS],
+}
+
+/// Position of a state.
+pub fn position(y: &State) -> DVec3 {
+    DVec3::new(y[0], y[1], y[2])
+}
+
+/// Attitude of a state, a unit quaternion.
+pub fn attitude(y: &State) -> DQuat {
+    let raw = DQuat::from_xyzw(y[4], y[5], y[6], y[3]);
+    let length = raw.length();
+    if length > 0.0 { raw * (1.0 / length) } else { DQuat::IDENTITY }
+}
+
+/// Velocity of a state over the Earth, in the frame.
+pub fn velocity(y: &State) -> DVec3 {
+    DVec3::new(y[8], y[9], y[10])
+}
+
+/// Inertial angular velocity of a state, in body axes.
+pub fn rates(y: &State) -> DVec3 {
+    DVec3::new(y[11], y[12], y[13])
+}
+
+/// A state of its parts.
+pub fn state(position: DVec3, attitude: DQuat, cross_track_m: f64, velocity: DVec3, rates: DVec3) -> State {
+    let (q, [x, y, z]) = (attitude, position.to_array());
+    let ([vx, vy, vz], [p, qr, r]) = (velocity.to_array(), rates.to_array());
+    [x, y, z, q.w, q.x, q.y, q.z, cross_track_m, vx, vy, vz, p, qr, r]
+}
+
+/// The state with its quaternion of length 1.
+pub fn normalised(mut y: State) -> State {
+    let q = attitude(&y);
+    (y[3], y[4], y[5], y[6]) = (q.w, q.x, q.y, q.z);
+    y
+}
+
+impl RigidMotion {
+    /// A body in its surroundings, controls at their initial values.
+    pub fn new(model: Arc<Model>, planet: Planet, atmosphere: Atmosphere, wind: Wind) -> Self {
+        let (controls, memory, still) = (model.initial_controls(), RefCell::new(model.memory()), wind.is_still());
+        Self { model, planet, atmosphere, wind, controls, gust_mps: DVec3::ZERO, memory, still }
+    }
+
+    /// Takes another model with the same controls.
+    pub fn set_model(&mut self, model: Arc<Model>) {
+        self.memory = RefCell::new(model.memory());
+        self.model = model;
+    }
+
+    fn flat(&self) -> bool {
+        matches!(self.planet.shape, Shape::Flat { .. })
+    }
+
+    /// Everything that is known of a state; with `all`, also what the model does not ask for.
+    #[inline]
+    pub fn sample(&self, y: &State, all: bool) -> Sample {
+        let model = &*self.model;
+        let uses = |quantity: Quantity| all || model.uses(quantity);
+        let frame_from_body = DMat3::from_quat(attitude(y));
+        let velocity_mps = velocity(y);
+        let in_body = |v: DVec3| frame_from_body.transpose() * v;
+
+        let course = model.course();
+        let angles = uses(Quantity::RollRad) || uses(Quantity::PitchRad) || uses(Quantity::YawRad);
+        let local = angles || course != Course::None || uses(Quantity::LatRad) || uses(Quantity::LonRad);
+        let place = if local || !self.still || uses(Quantity::AltitudeM) || self.atmosphere.depends_on_height() {
+            self.planet.place(position(y))
+        } else {
+            Place::default()
+        };
+        let frame_from_ned =
+            if self.flat() || (self.still && !local) { None } else { Some(self.planet.frame_from_ned(place)) };
+        let to_ned = |v: DVec3| frame_from_ned.map_or(v, |m| m.transpose() * v);
+        let air = self.atmosphere.at(place.altitude_m);
+
+        let mut through_air = in_body(velocity_mps) - self.gust_mps;
+        if !self.still {
+            let wind = self.wind.ned_mps(place.altitude_m);
+            through_air -= in_body(frame_from_ned.map_or(wind, |m| m * wind));
+        }
+        let earth_rates =
+            if self.planet.rotation_radps == 0.0 { rates(y) } else { rates(y) - in_body(self.planet.rotation()) };
+
+        let tas = through_air.length();
+        let dynamic_pressure_pa = 0.5 * air.density_kgpm3 * tas * tas;
+        let mut slots = [0.0; SLOTS];
+        slots[QUANTITIES..QUANTITIES + self.controls.len()].copy_from_slice(&self.controls);
+        let mut set = |quantity: Quantity, value: f64| slots[quantity.slot()] = value;
+        if uses(Quantity::AlphaRad) {
+            set(Quantity::AlphaRad, through_air.z.atan2(through_air.x));
+        }
+        if uses(Quantity::BetaRad) {
+            set(Quantity::BetaRad, through_air.y.atan2(through_air.x.hypot(through_air.z)));
+        }
+        set(Quantity::Mach, if air.sound_mps > 0.0 { tas / air.sound_mps } else { 0.0 });
+        set(Quantity::AltitudeM, place.altitude_m);
+        let half = 0.5 / tas.max(model.min_speed_mps);
+        set(Quantity::PHat, earth_rates.x * model.span_m * half);
+        set(Quantity::QHat, earth_rates.y * model.chord_m * half);
+        set(Quantity::RHat, earth_rates.z * model.span_m * half);
+        set(Quantity::TasMps, tas);
+        if uses(Quantity::EasMps) {
+            set(Quantity::EasMps, tas * (air.density_kgpm3 / SEA_LEVEL_DENSITY_KGPM3).sqrt());
+        }
+        set(Quantity::PRadps, earth_rates.x);
+        set(Quantity::QRadps, earth_rates.y);
+        set(Quantity::RRadps, earth_rates.z);
+        if angles {
+            let [roll, pitch, yaw] =
+                angles_of(&frame_from_ned.map_or(frame_from_body, |m| m.transpose() * frame_from_body));
+            set(Quantity::RollRad, roll);
+            set(Quantity::PitchRad, pitch);
+            set(Quantity::YawRad, yaw);
+        }
+        set(Quantity::LatRad, place.lat_rad);
+        set(Quantity::LonRad, place.lon_rad);
+        set(Quantity::CrossTrackM, y[7]);
+        set(Quantity::DensityKgpm3, air.density_kgpm3);
+        set(Quantity::DynamicPressurePa, dynamic_pressure_pa);
+
+        let loads = model.loads(&mut slots, through_air, dynamic_pressure_pa, &mut self.memory.borrow_mut());
+        Sample {
+            frame_from_body,
+            altitude_m: place.altitude_m,
+            air,
+            through_air,
+            earth_rates,
+            ned_mps: if local || self.flat() { to_ned(velocity_mps) } else { DVec3::ZERO },
+            loads,
+            slots,
+        }
+    }
+
+    /// Rate of the attitude's quaternion (w, x, y, z).
+    fn turning(y: &State, earth_rates: DVec3) -> [f64; 4] {
+        let ([w, x, yy, z], DVec3 { x: p, y: q, z: r }) = ([y[3], y[4], y[5], y[6]], earth_rates);
+        [
+            -0.5 * (x * p + yy * q + z * r),
+            0.5 * (w * p + yy * r - z * q),
+            0.5 * (w * q - x * r + z * p),
+            0.5 * (w * r + x * q - yy * p),
+        ]
+    }
+
+    /// Velocity across the commanded course, positive to the right, m/s.
+    fn across(&self, ned_mps: DVec3) -> f64 {
+        match self.model.course() {
+            Course::None => 0.0,
+            Course::Fixed(course_rad) => ned_mps.y * course_rad.cos() - ned_mps.x * course_rad.sin(),
+            Course::Control(place, si) => {
+                let course_rad = self.controls[place] * si;
+                ned_mps.y * course_rad.cos() - ned_mps.x * course_rad.sin()
+            }
+        }
+    }
+}
+
+/// Roll, pitch and yaw of an attitude (body to north, east, down), radians; straight up or down, roll is taken as 0.
+pub fn angles_of(ned_from_body: &DMat3) -> [f64; 3] {
+    let (x, y, z) = (ned_from_body.x_axis, ned_from_body.y_axis, ned_from_body.z_axis);
+    let level = x.x.hypot(x.y);
+    let pitch = (-x.z).atan2(level);
+    // Below this the nose's heading is rounding noise; the right wing still has one.
+    if level > 1e-9 { [y.z.atan2(z.z), pitch, x.y.atan2(x.x)] } else { [0.0, pitch, (-y.x).atan2(y.y)] }
+}
+
+impl Motion<f64, N> for RigidMotion {
+    #[inline]
+    fn rate(&self, _: f64, y: &State) -> State {
+        let sample = self.sample(y, false);
+        let model = &*self.model;
+        let fall = self.planet.fall_mps2(position(y), velocity(y));
+        let v = velocity(y);
+        let a = sample.frame_from_body * (sample.loads.force_n / model.mass_kg) + fall;
+        let w = rates(y);
+        let turn = model.inverse_inertia * (sample.loads.moment_nm - w.cross(model.inertia_kgm2 * w));
+        let [qw, qx, qy, qz] = Self::turning(y, sample.earth_rates);
+        let across = self.across(sample.ned_mps);
+        [v.x, v.y, v.z, qw, qx, qy, qz, across, a.x, a.y, a.z, turn.x, turn.y, turn.z]
+    }
+
+    fn drift(&self, y: &State) -> State {
+        let v = velocity(y);
+        let mut earth_rates = rates(y);
+        if self.planet.rotation_radps != 0.0 {
+            earth_rates -= attitude(y).inverse() * self.planet.rotation();
+        }
+        let [qw, qx, qy, qz] = Self::turning(y, earth_rates);
+        let ned_mps = if self.model.course() == Course::None || self.flat() {
+            v
+        } else {
+            self.planet.frame_from_ned(self.planet.place(position(y))).transpose() * v
+        };
+        [v.x, v.y, v.z, qw, qx, qy, qz, self.across(ned_mps), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    }
+}

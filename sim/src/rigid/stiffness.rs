@@ -1,0 +1,111 @@
+//! How short a step must be: the fastest mode of a body in the air, against what an integrator holds.
+//!
+//! At load the accelerations are differentiated by the body's velocity and rates (6 x 6, central differences) at the
+//! initial attitude to the air, at the never-exceed speed or the initial one, whichever is greater; the greatest size
+//! of its eigenvalues comes from a high power of the matrix (Gelfand's formula). Aerodynamic modes scale with density
+//! times speed, so one number serves the whole flight: lambda = `per_flow` x density x speed.
+//!
+//! Source: I. Gelfand, Normierte Ringe, 1941 (spectral radius); stability limits: see [`crate::integrate`].
+
+use super::motion::{self, N, RigidMotion, State};
+use crate::integrate::{Integrator, Motion};
+use glam::DVec3;
+
+/// Part of an integrator's limit that a step may use: beyond it errors no longer die out quickly.
+const SHARE: f64 = 0.7;
+/// Most pieces that a step is cut into.
+pub const MOST_PIECES: u32 = 1_000;
+
+/// The fastest mode of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stiffness {
+    /// Speed that it was taken at, m/s.
+    pub speed_mps: f64,
+    /// Greatest size of an eigenvalue there, 1/s.
+    pub lambda_radps: f64,
+    /// The same over density and speed.
+    pub per_flow: f64,
+}
+
+impl Stiffness {
+    /// Of a body at a state.
+    pub fn of(motion: &RigidMotion, y: &State) -> Self {
+        let sample = motion.sample(y, true);
+        let airspeed = sample.through_air.length();
+        let speed_mps = airspeed.max(motion.model.never_exceed_mps.unwrap_or(0.0)).max(10.0);
+        let along = if airspeed > 1.0 { sample.through_air / airspeed } else { DVec3::X };
+        // The same attitude to the air at the greater speed.
+        let frame_from_body = sample.frame_from_body;
+        let velocity = motion::velocity(y) + frame_from_body * (along * speed_mps - sample.through_air);
+        let mut base = *y;
+        (base[8], base[9], base[10]) = (velocity.x, velocity.y, velocity.z);
+        let lambda_radps = spectral_radius(&jacobian(motion, &base, speed_mps));
+        let flow = sample.air.density_kgpm3 * speed_mps;
+        Self { speed_mps, lambda_radps, per_flow: if flow > 0.0 { lambda_radps / flow } else { 0.0 } }
+    }
+
+    /// Pieces that a step is cut into so that every mode is held; `None` if that takes more than [`MOST_PIECES`].
+    pub fn pieces(&self, integrator: Integrator, density_kgpm3: f64, airspeed_mps: f64, dt_s: f64) -> Option<u32> {
+        let size = self.per_flow * density_kgpm3 * airspeed_mps * dt_s / (SHARE * integrator.damping_limit());
+        let pieces = size.ceil().max(1.0);
+        (pieces <= f64::from(MOST_PIECES)).then_some(pieces as u32)
+    }
+}
+
+/// Derivative of the accelerations by velocity and rates; lengths are scaled by the body's so that all units are 1/s.
+fn jacobian(motion: &RigidMotion, base: &State, speed_mps: f64) -> [[f64; 6]; 6] {
+    let first = N - 6;
+    let length = motion.model.span_m.max(motion.model.chord_m).max(1e-3);
+    let unit = |place: usize| if place < 3 { 1.0 } else { 1.0 / length };
+    let mut all = [[0.0; 6]; 6];
+    for place in 0..6 {
+        let small = 1e-4 * speed_mps * unit(place);
+        let side = |by: f64| {
+            let mut y = *base;
+            y[first + place] += by;
+            motion.rate(0.0, &y)
+        };
+        let (above, below) = (side(small), side(-small));
+        for (row, entries) in all.iter_mut().enumerate() {
+            entries[place] = (above[first + row] - below[first + row]) / (2.0 * small) * unit(place) / unit(row);
+        }
+    }
+    all
+}
+
+/// The greatest size of an eigenvalue: the 2^8th root of the norm of the 2^8th power.
+fn spectral_radius(matrix: &[[f64; 6]; 6]) -> f64 {
+    let norm = |m: &[[f64; 6]; 6]| m.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
+    let (mut power, mut log, mut exponent) = (*matrix, 0.0, 1.0);
+    for _ in 0..8 {
+        let size = norm(&power);
+        if !(size > 0.0 && size.is_finite()) {
+            return 0.0;
+        }
+        log += size.ln() / exponent;
+        let scaled = power.map(|row| row.map(|x| x / size));
+        power = std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| scaled[i][k] * scaled[k][j]).sum()));
+        exponent *= 2.0;
+    }
+    (log + norm(&power).max(f64::MIN_POSITIVE).ln() / exponent).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_spectral_radius_is_the_greatest_eigenvalue() {
+        let mut m = [[0.0; 6]; 6];
+        for (i, row) in m.iter_mut().enumerate() {
+            row[i] = -(i as f64);
+        }
+        m[0][5] = 300.0;
+        // A matrix of condition 300: the 256th root of it is 1.02.
+        assert!((spectral_radius(&m) / 5.0 - 1.0).abs() < 0.03, "{}", spectral_radius(&m));
+        let mut turn = [[0.0; 6]; 6];
+        (turn[0][1], turn[1][0]) = (-4.0, 4.0);
+        assert!((spectral_radius(&turn) / 4.0 - 1.0).abs() < 0.01);
+        assert_eq!(spectral_radius(&[[0.0; 6]; 6]), 0.0);
+    }
+}

@@ -1,0 +1,124 @@
+//! `poligon simulate`: a body from files, flown, as CSV.
+
+use crate::args::SimulateArgs;
+use crate::failure::Failure;
+use crate::output::{self, Output};
+use crate::report::{Simulated, Stiffness, TrimFound};
+use sim::case::Case;
+use sim::file::FileError;
+use sim::rigid::column::COLUMNS;
+use sim::rigid::simulation::{Ending, Terrain};
+use sim::rigid::stop::Stop;
+use sim::rigid::{Inputs, Model, Simulation};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use terrain::Ground;
+use terrain::store::World;
+
+/// Runs the verb.
+///
+/// # Errors
+/// [`Failure::Misuse`] if a file cannot be used, [`Failure::Failed`] if the flight fails or its rows cannot be written.
+pub fn run(args: &SimulateArgs, output: Output) -> Result<(), Failure> {
+    let unusable = |error: FileError| Failure::Misuse(error.to_string());
+    let model = Model::read(&args.model).map_err(unusable)?;
+    let case = Case::read(&args.case).map_err(unusable)?;
+    let inputs = match &args.inputs {
+        Some(file) => Inputs::read(file, &model.controls).map_err(unusable)?,
+        None => Inputs::default(),
+    };
+    let wrong = |why: String| Failure::Misuse(FileError::new(&args.case, why).to_string());
+    let Some(seconds) = case.run.seconds else {
+        return Err(wrong("run.seconds: expected how long to fly, found none".to_owned()));
+    };
+    if case.shot.is_some() {
+        return Err(wrong("shot: expected none, it is for `poligon trajectory`".to_owned()));
+    }
+    let terrain = match &case.run.world {
+        Some(path) => Some(terrain(&World::read(path).map_err(|e| Failure::while_doing("reading the world", e))?)),
+        None => None,
+    };
+    let names: Vec<String> =
+        COLUMNS.iter().map(|name| (*name).to_owned()).chain(model.controls.iter().map(|c| c.name.clone())).collect();
+    let mut flight = Simulation::new(model, &case, inputs, terrain).map_err(unusable)?;
+    let stops: Vec<Stop> = case
+        .run
+        .stop
+        .iter()
+        .map(|words| Stop::parse(words, &flight.motion))
+        .collect::<Result<_, _>>()
+        .map_err(wrong)?;
+    let dt_s = case.run.dt_s.unwrap_or(seconds);
+
+    let mut text = format!("{},event\n", names.join(","));
+    let (mut rows, mut last, mut event) = (0, Vec::new(), String::new());
+    let wants_rows = args.out.is_some() || output == Output::Table;
+    let ending = flight.run(seconds, case.run.output_dt_s.unwrap_or(dt_s), &stops, |row, told| {
+        if wants_rows {
+            write_row(&mut text, row, told);
+        }
+        rows += 1;
+        (last, event) = (row.to_vec(), told.to_owned());
+    });
+    match &args.out {
+        Some(file) => output::write_whole(file, text.as_bytes())?,
+        None if output == Output::Table => print(&text)?,
+        None => {}
+    }
+    let fastest = flight.stiffness;
+    let limit = case.run.integrator.damping_limit();
+    if flight.most_pieces > 1 {
+        output::tell(format_args!(
+            "poligon: the body's fastest mode is {:.3} 1/s at {:.1} m/s; steps of {dt_s} s were taken in up to {} pieces",
+            fastest.lambda_radps, fastest.speed_mps, flight.most_pieces
+        ));
+    }
+    if output == Output::Json || args.out.is_some() {
+        output.print(&Simulated {
+            event,
+            time_s: flight.t_s(),
+            rows,
+            steps: flight.steps,
+            stiffness: Stiffness {
+                speed_mps: fastest.speed_mps,
+                lambda_radps: fastest.lambda_radps,
+                lambda_h: fastest.lambda_radps * dt_s,
+                limit,
+                pieces: flight.most_pieces,
+            },
+            trim: flight.trimmed.as_ref().map(|found| TrimFound {
+                values: found.values.iter().cloned().collect(),
+                residuals: found.residuals.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+            }),
+            last: names.into_iter().zip(last).collect(),
+        })?;
+    }
+    match ending {
+        Ending::Failed(why) => Err(Failure::Failed(why)),
+        Ending::Time | Ending::Stop(_) => Ok(()),
+    }
+}
+
+/// The ground of a world, all of it at hand.
+fn terrain(world: &World) -> Terrain {
+    Terrain { area: Ground::new(world.field.clone()).whole(), projection: world.projection.clone() }
+}
+
+/// A row; what is not known is an empty cell. Numbers read back to the same bits.
+fn write_row(text: &mut String, row: &[f64], event: &str) {
+    for value in row {
+        // Writing to a String cannot fail.
+        let _ = if value.is_finite() { write!(text, "{value:?},") } else { write!(text, ",") };
+    }
+    let _ = writeln!(text, "{event}");
+}
+
+/// Rows to stdout; a reader that has gone away is no error.
+fn print(text: &str) -> Result<(), Failure> {
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::while_doing("writing to stdout", error))
+        }
+        _ => Ok(()),
+    }
+}
