@@ -210,7 +210,8 @@ impl<'a> Flight<'a> {
             taken += pieces;
             let end = self.first_end(&step, &next)?;
             let (last_s, last) = end.as_ref().map_or((step.length_s, next), |(cut_s, last, _)| (*cut_s, *last));
-            next_row = self.rows_within(&step, last_s, &last, end.is_some(), next_row, &mut rows)?;
+            let over = end.is_some() || to_s >= self.longest_s;
+            next_row = self.rows_within(&step, last_s, &last, over, next_row, &mut rows)?;
             apex_m = apex_m.max(self.highest_m(&step, last_s, &last)?);
             if let Some((cut_s, last, event)) = end {
                 return Ok(self.finished(rows, t_s + cut_s, last, event, apex_m, taken));
@@ -342,7 +343,7 @@ impl<'a> Flight<'a> {
         step: &Step,
         last_s: f64,
         last: &State,
-        ends: bool,
+        over: bool,
         mut next_row: u64,
         rows: &mut Vec<Row>,
     ) -> Result<u64, TrajectoryError> {
@@ -356,8 +357,7 @@ impl<'a> Flight<'a> {
                 (metres, range(step.from_s + last_s, last), range(step.from_s, &step.from))
             }
         };
-        // The end has its own row; the longest flight ends on a step's end.
-        let over = ends || step.from_s + last_s >= self.longest_s;
+        // The end has its own row.
         let before = if over { reached - SAME_ROW * every } else { reached };
         while next_row as f64 * every <= before {
             let target = next_row as f64 * every;
