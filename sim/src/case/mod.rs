@@ -143,7 +143,7 @@ pub struct Run {
 pub struct Shot {
     /// Speed at the muzzle over the Earth, m/s.
     pub speed_mps: Option<f64>,
-    /// Elevation of the bore over the horizon, or over the line of sight where there is a zero range.
+    /// Added to `look_angle_rad` and to what the zero asks for; the sum is the bore's elevation over the horizon.
     pub elevation_rad: f64,
     /// Clockwise from north.
     pub azimuth_rad: f64,
