@@ -54,7 +54,7 @@ fn help_and_version_go_to_stdout() {
 #[test]
 fn verbs_that_do_not_exist_yet_are_neither_listed_nor_taken() {
     let help = stdout(&poligon(&["--help"]));
-    for verb in ["simulate", "scenario", "instructor", "replay", "serve"] {
+    for verb in ["scenario", "instructor", "replay", "serve"] {
         assert!(!help.contains(verb), "{verb} is listed");
         assert_refused(&[verb], 2, &["unrecognized subcommand", verb]);
     }

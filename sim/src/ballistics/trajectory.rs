@@ -14,13 +14,13 @@
 use super::column::{Column, End, IN_FILE, NAMES, Relation};
 use super::drift::SpinDrift;
 use super::launch::{Launch, STEP_S};
-use super::motion::{ShellMotion, State, StepError, advance, state};
+use super::motion::{ShellMotion, State, StepError, advance, parts, state};
 use super::observer::Observer;
 use super::projectile::Projectile;
-use super::world_ground::WorldGround;
 use crate::case::{Case, MOST_STEPS};
 use crate::file::FileError;
 use crate::integrate::Before;
+use crate::world_ground::WorldGround;
 use std::fmt;
 
 /// Longest flight where a case gives none, seconds.
@@ -243,7 +243,7 @@ impl<'a> Flight<'a> {
             End::Return => false,
             // A path of no length: on or under the ground, or not.
             End::Ground if self.observer.ground.is_some() => {
-                self.observer.ground.is_some_and(|ground| ground.impact(&seen, &seen, 1.0).is_some())
+                self.observer.ground.is_some_and(|ground| ground.impact(parts(&seen), parts(&seen), 1.0).is_some())
             }
             End::Ground => {
                 let altitude_m = self.observer.altitude_m(&seen);
@@ -277,7 +277,7 @@ impl<'a> Flight<'a> {
             let cut_s = match end {
                 End::Ground if observer.ground.is_some() => observer
                     .ground
-                    .and_then(|ground| ground.impact(&from, &to, step.length_s))
+                    .and_then(|ground| ground.impact(parts(&from), parts(&to), step.length_s))
                     .map(|impact| impact.time_s),
                 End::Ground | End::Return => {
                     let level_m = if *end == End::Ground { 0.0 } else { muzzle_m };

@@ -1,6 +1,6 @@
 //! The file of a case as it is written, and every check on the way to a [`Case`].
 
-use super::{Attitude, Case, Initial, MOST_STEPS, RatesFrame, Run, Shot, Trim, Turbulence, Velocity};
+use super::{Attitude, Case, DEFAULT_WORLD, Initial, MOST_STEPS, RatesFrame, Run, Shot, Trim, Turbulence, Velocity};
 use crate::atmosphere::{AirSample, Atmosphere, Layers, Station};
 use crate::integrate::Integrator;
 use crate::planet::{
@@ -380,7 +380,10 @@ impl RunFile {
         if let (Some(seconds), Some(dt_s)) = (self.seconds, self.dt_s) {
             within("run.seconds / run.dt_s", Some(seconds / dt_s), 0.0, MOST_STEPS)?;
         }
-        let beside = |world: PathBuf| file.parent().map_or_else(|| world.clone(), |folder| folder.join(&world));
+        let beside = |world: PathBuf| match file.parent() {
+            Some(folder) if world.as_os_str() != DEFAULT_WORLD => folder.join(world),
+            _ => world,
+        };
         Ok(Run {
             seconds: self.seconds,
             dt_s: self.dt_s,

@@ -1,7 +1,7 @@
 //! What ends a run early: `ground`, or a column below or above a value, as `altitude_m<0`.
 //!
-//! `ground` is the height above the ground falling below 0: over a world's plane by the swept path, so that no ridge is
-//! passed through; elsewhere at the step's ends.
+//! `ground` is the height above the ground falling below 0: over a world by the swept path, so that no ridge is
+//! passed through; elsewhere the height itself.
 
 use super::column;
 use super::motion::RigidMotion;

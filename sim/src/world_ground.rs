@@ -1,16 +1,15 @@
 //! A world's ground under the frame of a case.
 //!
-//! A flat frame *is* the world's plane: it is laid on it at the muzzle, with its north along true north there, so that
-//! distances of a shot are distances of the picture. Latitudes and longitudes are then the world's own, and `height`
-//! answers for them what the shell has met. A muzzle in metres counts from the world's centre. On a round Earth or the
+//! A flat frame *is* the world's plane: it is laid on it at the start, with its north along true north there, so that
+//! distances of a flight are distances of the picture. Latitudes and longitudes are then the world's own, and `height`
+//! answers for them what was met. A start in metres counts from the world's centre. On a round Earth or the
 //! ellipsoid a place is looked up on the world's map by its latitude and longitude; heights are taken as they are,
 //! without a geoid between ellipsoid and sea level.
 //!
 //! World: X east, Y up, Z south, metres.
 
-use super::impact::{self, Impact};
-use super::motion::{State, parts};
-use super::path::StepPath;
+use crate::ballistics::impact::{self, Impact};
+use crate::ballistics::path::StepPath;
 use crate::case::Case;
 use crate::planet::{Place, Planet, Shape};
 use glam::{DMat2, DVec2, DVec3};
@@ -33,9 +32,9 @@ pub struct WorldGround {
 /// A flat frame on the world's plane.
 #[derive(Debug, Clone, Copy)]
 struct Laid {
-    /// North and east of the muzzle in the frame.
-    muzzle_m: DVec2,
-    /// World x and z of the muzzle.
+    /// North and east of the start in the frame.
+    start_m: DVec2,
+    /// World x and z of the start.
     world_m: DVec2,
     /// From north and east to world x and z.
     turn: DMat2,
@@ -51,7 +50,7 @@ impl WorldGround {
     pub fn over(area: Area, projection: Projection, case: &Case) -> Self {
         let laid = matches!(case.planet.shape, Shape::Flat { .. }).then(|| match case.initial.flat_m {
             Some(at) => Laid {
-                muzzle_m: at.truncate(),
+                start_m: at.truncate(),
                 world_m: DVec2::new(at.y, -at.x),
                 turn: DMat2::from_cols(DVec2::NEG_Y, DVec2::X),
             },
@@ -61,7 +60,7 @@ impl WorldGround {
                 // A true bearing less the convergence is the bearing on the map.
                 let (sin, cos) = projection.grid_convergence_rad(at).sin_cos();
                 Laid {
-                    muzzle_m: case.planet.position_m(place).truncate(),
+                    start_m: case.planet.position_m(place).truncate(),
                     world_m: projection.to_world(at),
                     turn: DMat2::from_cols(DVec2::new(-sin, -cos), DVec2::new(cos, -sin)),
                 }
@@ -73,7 +72,7 @@ impl WorldGround {
     /// A position of the frame in the world.
     pub fn world_m(&self, position_m: DVec3) -> DVec3 {
         let (plan, altitude_m) = match &self.laid {
-            Some(laid) => (laid.world_m + laid.turn * (position_m.truncate() - laid.muzzle_m), -position_m.z),
+            Some(laid) => (laid.world_m + laid.turn * (position_m.truncate() - laid.start_m), -position_m.z),
             None => {
                 let place = self.planet.place(position_m);
                 let at = Geodetic { lat_rad: place.lat_rad, lon_rad: place.lon_rad };
@@ -106,9 +105,15 @@ impl WorldGround {
         Place { lat_rad: place.lat_rad, lon_rad: place.lon_rad, altitude_m: at.y }
     }
 
-    /// Where a step from one state to another first meets the ground.
-    pub fn impact(&self, from: &State, to: &State, step_s: f64) -> Option<Impact> {
-        let ((from_r, from_v), (to_r, to_v)) = (parts(from), parts(to));
+    /// Height of the ground under a position of the frame, metres; `None` over void and beyond the world.
+    pub fn height_m(&self, position_m: DVec3) -> Option<f64> {
+        let at = self.world_m(position_m);
+        self.area.height_m(at.x, at.z)
+    }
+
+    /// Where a step first meets the ground; its ends are position and velocity in the frame.
+    pub fn impact(&self, from: (DVec3, DVec3), to: (DVec3, DVec3), step_s: f64) -> Option<Impact> {
+        let ((from_r, from_v), (to_r, to_v)) = (from, to);
         let path = StepPath {
             from_m: self.world_m(from_r),
             from_mps: self.world_mps(from_r, from_v),
