@@ -26,6 +26,8 @@ use std::sync::Arc;
 
 /// Times nearer to each other than this are one, seconds.
 const SAME_S: f64 = 1e-9;
+/// A start this near to a stop does not stop: a height of 0 over the ellipsoid is known to a nanometre only.
+const ON_IT: f64 = 1e-6;
 /// Steps between two looks at how stiff the flow makes the body.
 const STEPS_A_LOOK: u32 = 16;
 
@@ -279,7 +281,7 @@ impl Simulation {
         let mut rows = 1.0;
         let mut row = self.row();
         emit(&row, "start");
-        if let Some(stop) = stops.iter().find(|stop| self.stopped(stop, self.t_s, &self.y)) {
+        if let Some(stop) = stops.iter().find(|stop| self.stopped(stop, self.t_s, &self.y, ON_IT)) {
             return Ending::Stop(stop.words.clone());
         }
         while self.t_s < end_s - SAME_S {
@@ -295,7 +297,7 @@ impl Simulation {
                 let t_s = first_s + rows * row_s;
                 rows += 1.0;
                 let y = self.glimpse(t_s - self.t_s);
-                if y.iter().all(|x| x.is_finite()) && !stops.iter().any(|stop| self.stopped(stop, t_s, &y)) {
+                if y.iter().all(|x| x.is_finite()) && !stops.iter().any(|stop| self.stopped(stop, t_s, &y, 0.0)) {
                     emit(&self.row_of(t_s, &y), "");
                 }
             }
@@ -333,8 +335,8 @@ impl Simulation {
         (self.t_s, self.y, self.before) = (t_s, y, before);
     }
 
-    fn stopped(&self, stop: &Stop, t_s: f64, y: &State) -> bool {
-        stop.holds(|place| match (place, COLUMNS.get(place)) {
+    fn stopped(&self, stop: &Stop, t_s: f64, y: &State, margin: f64) -> bool {
+        stop.holds(margin, |place| match (place, COLUMNS.get(place)) {
             (column::AGL, _) => self.ground_m(y).map_or(f64::INFINITY, |ground| self.place(y).altitude_m - ground),
             (_, Some(&"altitude_m")) => self.motion.planet.altitude_m(motion::position(y)),
             (place, _) => self.row_of(t_s, y)[place],
@@ -351,7 +353,7 @@ impl Simulation {
                 Some(ground) if stop.is_ground() => {
                     ground.impact(ends(&good.1), ends(&self.y), step_s).map(|impact| impact.time_s)
                 }
-                _ => self.stopped(stop, self.t_s, &self.y).then(|| self.crossing_s(stop, good, step_s)),
+                _ => self.stopped(stop, self.t_s, &self.y, 0.0).then(|| self.crossing_s(stop, good, step_s)),
             };
             if let Some(ahead_s) = ahead_s.filter(|ahead_s| first.is_none_or(|(before, _)| *ahead_s < before)) {
                 first = Some((ahead_s, stop));
@@ -370,7 +372,7 @@ impl Simulation {
                 break;
             }
             let there = self.glimpse_from(good.0, &good.1, middle);
-            if self.stopped(stop, good.0 + middle, &there) { high = middle } else { low = middle }
+            if self.stopped(stop, good.0 + middle, &there, 0.0) { high = middle } else { low = middle }
         }
         high
     }

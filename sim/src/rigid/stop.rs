@@ -40,9 +40,9 @@ impl Stop {
         self.ground
     }
 
-    /// Whether it holds; `column` gives the value of a column.
-    pub fn holds(&self, column: impl Fn(usize) -> f64) -> bool {
-        let value = column(self.place);
-        if self.below { value < self.value } else { value > self.value }
+    /// Whether it holds by more than `margin`; `column` gives the value of a column.
+    pub fn holds(&self, margin: f64, column: impl Fn(usize) -> f64) -> bool {
+        let beyond = column(self.place) - self.value;
+        if self.below { -beyond > margin } else { beyond > margin }
     }
 }
