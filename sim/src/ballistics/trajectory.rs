@@ -11,7 +11,7 @@
 //! altitude 0 (event `floor`).
 //! A muzzle in or under the ground, where ground ends a shot, ends it at once.
 
-use super::column::{Column, End, IN_FILE, NAMES, Relation};
+use super::column::{Column, End, IN_FILE, NAMES};
 use super::drift::SpinDrift;
 use super::launch::{Launch, STEP_S};
 use super::motion::{ShellMotion, State, StepError, advance, parts, state};
@@ -20,6 +20,7 @@ use super::projectile::Projectile;
 use crate::case::{Case, MOST_STEPS};
 use crate::file::FileError;
 use crate::integrate::Before;
+use crate::limit::Relation;
 use crate::world_ground::WorldGround;
 use std::fmt;
 
