@@ -97,6 +97,14 @@ pub fn state(position: DVec3, attitude: DQuat, cross_track_m: f64, velocity: DVe
     [x, y, z, q.w, q.x, q.y, q.z, cross_track_m, vx, vy, vz, p, qr, r]
 }
 
+/// Fastest flight, m/s, and fastest turn, rad/s: beyond them a state has run away.
+const FASTEST: (f64, f64) = (1e6, 1e5);
+
+/// Whether a state is one that a body can have: finite, and not run away.
+pub fn is_flight(y: &State) -> bool {
+    y.iter().all(|x| x.is_finite()) && velocity(y).length() <= FASTEST.0 && rates(y).length() <= FASTEST.1
+}
+
 /// Components of velocity (m/s) and rates (rad/s) below this are rest: what only decays would end in denormal numbers,
 /// which are slow, and no output shows thirty digits.
 const REST: f64 = 1e-30;
