@@ -4,6 +4,7 @@
 //! take turns at the same cameras, so their costs compare even on a busy machine. Errors are exact properties of what
 //! is drawn, not of the machine.
 
+pub mod flight;
 mod knobs;
 mod plot;
 mod post_step;
