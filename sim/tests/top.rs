@@ -72,7 +72,9 @@ fn the_top_follows_the_exact_solution() {
     // The brief asks for these figures; the table itself is good to 3e-11.
     for (steps_hz, rate_limit) in [(1_000, 1e-7), (120, 1e-4)] {
         let (rate_error, turn_error) = errors(Integrator::Rk4, steps_hz, 10.0);
-        println!("top, rk4 at {steps_hz} Hz over 10 s: rates within {rate_error:.2e} rad/s, attitude {turn_error:.2e} rad");
+        println!(
+            "top, rk4 at {steps_hz} Hz over 10 s: rates within {rate_error:.2e} rad/s, attitude {turn_error:.2e} rad"
+        );
         assert!(rate_error < rate_limit, "{steps_hz} Hz: {rate_error} rad/s");
     }
 }
@@ -89,7 +91,9 @@ fn energy_and_momentum_stay_for_an_hour() {
         let energy_drift = (energy_after / energy - 1.0).abs();
         let momentum_drift = (momentum_after / momentum - 1.0).abs();
         let length = attitude_length(&flight);
-        println!("top, rk4 at {steps_hz} Hz, drift in an hour: energy {energy_drift:.2e}, momentum {momentum_drift:.2e}");
+        println!(
+            "top, rk4 at {steps_hz} Hz, drift in an hour: energy {energy_drift:.2e}, momentum {momentum_drift:.2e}"
+        );
         assert!(energy_drift < limit && momentum_drift < limit, "{steps_hz} Hz: {energy_drift} {momentum_drift}");
         assert!((length - 1.0).abs() < 1e-12, "{length}");
     }

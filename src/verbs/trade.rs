@@ -1,5 +1,5 @@
 //! `poligon trade`: accuracy against cost of every setting, as a report and, with `--out`, as files: `trade.csv`,
-//! `trade.json`, a plot a knob and `all.svg`.
+//! `trade.json`, and plots as SVG and PNG: one a knob, one for each group of curves, and all on one sheet.
 
 use crate::args::TradeArgs;
 use crate::failure::Failure;
@@ -12,6 +12,9 @@ use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
+
+/// A plot of 640 x 360 units becomes a picture of 1280 x 720.
+const PIXELS_A_UNIT: f64 = 2.0;
 
 /// Runs the verb.
 ///
@@ -73,10 +76,13 @@ fn write(folder: &Path, trade: &Trade) -> Result<(), Failure> {
     };
     put("trade.csv".into(), trade::csv(trade))?;
     put("trade.json".into(), format!("{}\n", output::to_value(trade)?))?;
-    for knob in &trade.knobs {
-        put(format!("{}.svg", knob.name.replace(' ', "_")), trade::plot(knob))?;
+    for (name, plot) in trade::plots(&trade.knobs).into_iter().chain([("all".into(), trade::sheet(&trade.knobs))]) {
+        put(format!("{name}.svg"), plot.svg())?;
+        let picture = plot.picture(PIXELS_A_UNIT);
+        let path = folder.join(format!("{name}.png"));
+        picture.write_png(&path).map_err(|error| Failure::Failed(error.to_string()))?;
     }
-    put("all.svg".into(), trade::sheet(&trade.knobs))
+    Ok(())
 }
 
 #[cfg(test)]
@@ -95,7 +101,7 @@ mod tests {
         let mut names: Vec<_> =
             fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
-        assert_eq!(names, ["all.svg", "post_step.svg", "trade.csv", "trade.json"]);
+        assert_eq!(names, ["all.png", "all.svg", "post_step.png", "post_step.svg", "trade.csv", "trade.json"]);
         fs::remove_dir_all(&folder).unwrap();
         assert!(write(Path::new("/dev/null/none"), &trade).is_err());
     }

@@ -45,12 +45,40 @@ struct Tier {
 
 const TIERS: [Tier; 8] = [
     Tier { label: "vacuum", surroundings: FLAT, atmosphere: "us1976", drag: false, linear: false, spin: false },
-    Tier { label: "air as at the muzzle", surroundings: FLAT, atmosphere: "constant", drag: true, linear: true, spin: false },
-    Tier { label: "air by height, linear Cd", surroundings: FLAT, atmosphere: "us1976", drag: true, linear: true, spin: false },
+    Tier {
+        label: "air as at the muzzle",
+        surroundings: FLAT,
+        atmosphere: "constant",
+        drag: true,
+        linear: true,
+        spin: false,
+    },
+    Tier {
+        label: "air by height, linear Cd",
+        surroundings: FLAT,
+        atmosphere: "us1976",
+        drag: true,
+        linear: true,
+        spin: false,
+    },
     Tier { label: "smooth Cd", surroundings: FLAT, atmosphere: "us1976", drag: true, linear: false, spin: false },
-    Tier { label: "+ Coriolis", surroundings: TURNING_FLAT, atmosphere: "us1976", drag: true, linear: false, spin: false },
+    Tier {
+        label: "+ Coriolis",
+        surroundings: TURNING_FLAT,
+        atmosphere: "us1976",
+        drag: true,
+        linear: false,
+        spin: false,
+    },
     Tier { label: "+ g(h)", surroundings: TURNING_ROUND, atmosphere: "us1976", drag: true, linear: false, spin: false },
-    Tier { label: "+ spin drift", surroundings: TURNING_ROUND, atmosphere: "us1976", drag: true, linear: false, spin: true },
+    Tier {
+        label: "+ spin drift",
+        surroundings: TURNING_ROUND,
+        atmosphere: "us1976",
+        drag: true,
+        linear: false,
+        spin: true,
+    },
     Tier { label: "ellipsoid, J2", surroundings: TURNING, atmosphere: "us1976", drag: true, linear: false, spin: true },
 ];
 
@@ -199,7 +227,13 @@ mod tests {
         };
         for knob in &knobs {
             for point in &knob.points {
-                println!("{:42} {:26} {:12.4} m {:7.1} ns", knob.name, point.label.as_deref().unwrap(), point.error, point.cost);
+                println!(
+                    "{:42} {:26} {:12.4} m {:7.1} ns",
+                    knob.name,
+                    point.label.as_deref().unwrap(),
+                    point.error,
+                    point.cost
+                );
             }
         }
         for (name, ..) in PROJECTILES {

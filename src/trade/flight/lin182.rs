@@ -29,8 +29,7 @@ const FOOT: f64 = 0.3048;
 const GRAVITY_MPS2: f64 = 9.806_65;
 /// 2,650 lb.
 const MASS_KG: f64 = 2_650.0 * 0.453_592_37;
-const INERTIA_KGM2: [f64; 3] =
-    [948.0 * SLUG * FOOT * FOOT, 1_346.0 * SLUG * FOOT * FOOT, 1_967.0 * SLUG * FOOT * FOOT];
+const INERTIA_KGM2: [f64; 3] = [948.0 * SLUG * FOOT * FOOT, 1_346.0 * SLUG * FOOT * FOOT, 1_967.0 * SLUG * FOOT * FOOT];
 const AREA_M2: f64 = 174.0 * FOOT * FOOT;
 const SPAN_M: f64 = 36.0 * FOOT;
 const CHORD_M: f64 = 4.9 * FOOT;
@@ -90,11 +89,8 @@ impl<T: Float> Lin182<T> {
         // Cosines and sines of the two angles without a look at the angles.
         let (ca, sa, cb, sb) = (u / plan, w / plan, plan / speed, v / speed);
         let (ahead, across) = (-drag * cb - side * sb, side * cb - drag * sb);
-        let force = [
-            pressed * (ahead * ca + lift * sa) + c(THRUST_N),
-            pressed * across,
-            pressed * (ahead * sa - lift * ca),
-        ];
+        let force =
+            [pressed * (ahead * ca + lift * sa) + c(THRUST_N), pressed * across, pressed * (ahead * sa - lift * ca)];
         let moment = [pressed * c(SPAN_M) * roll, pressed * c(CHORD_M) * pitch, pressed * c(SPAN_M) * yaw];
         let [ix, iy, iz] = INERTIA_KGM2.map(c);
         (

@@ -14,8 +14,11 @@ use std::hint::black_box;
 
 const STEPS_HZ: [u32; 14] = [2, 3, 5, 8, 12, 20, 30, 60, 120, 240, 480, 1_000, 2_000, 4_000];
 const QUICK_HZ: [u32; 9] = [5, 12, 20, 30, 60, 120, 480, 1_000, 4_000];
-/// Steps a second of the reference: its truncation is 16 times less than what halving the step still changes.
-const REFERENCE_HZ: u32 = 480;
+/// Steps a second of the reference, between those that are measured: fine enough for truncation, coarse enough for
+/// rounding, which grows with the number of steps.
+const REFERENCE_HZ: u32 = 600;
+/// Steps a second of its neighbours, which must agree with it.
+const NEIGHBOURS_HZ: [u32; 2] = [500, 720];
 /// A minute's flight is four kilometres: what is farther off than that has fallen apart.
 const APART_M: f64 = 4_000.0;
 /// Steps at least in what is timed at once, so that a clock's tick does not show.
@@ -27,7 +30,8 @@ const TIMED_STEPS: u32 = 30_000;
 /// None in practice; costs are measured by what may fail.
 pub fn knobs(effort: Effort) -> Result<(Vec<Knob>, String), Failure> {
     let reference = fly::<f64>(Integrator::Rk4, REFERENCE_HZ, SECONDS);
-    let halved = apart_m(&fly::<f64>(Integrator::Rk4, REFERENCE_HZ / 2, SECONDS), &reference);
+    let neighbours = NEIGHBOURS_HZ.map(|steps_hz| apart_m(&fly::<f64>(Integrator::Rk4, steps_hz, SECONDS), &reference));
+    let agreed_m = neighbours.into_iter().fold(0.0, f64::max);
     let rows: &[u32] = if effort.quick { &QUICK_HZ } else { &STEPS_HZ };
     let mut curves: Vec<(Integrator, &'static str, Vec<KnobPoint>)> = Vec::new();
     for integrator in [Integrator::Rk4, Integrator::Rk2, Integrator::Ab2, Integrator::SemiEuler] {
@@ -59,16 +63,16 @@ pub fn knobs(effort: Effort) -> Result<(Vec<Knob>, String), Failure> {
             name: format!("integrator {} {precision}", integrator.name()),
             unit: "steps a second".into(),
             error_unit: "m from the converged position after 60 s of pulsed flight".into(),
-            cost_unit: "us a simulated second".into(),
+            cost_unit: "microseconds a simulated second".into(),
             group: Some("integrator".into()),
             best: best(&points),
             points,
         }
     });
     let converged = format!(
-        "flight: a light aircraft with linear derivatives, 60 s; reference rk4 f64 at {REFERENCE_HZ} Hz, \
-         from which half of its step differs by {halved:.1e} m, so its truncation is some {:.0e} m",
-        halved / 16.0
+        "flight: a light aircraft with linear derivatives, 60 s; reference rk4 f64 at {REFERENCE_HZ} Hz, with which \
+         {} and {} Hz agree to {agreed_m:.0e} m: errors below that are noise",
+        NEIGHBOURS_HZ[0], NEIGHBOURS_HZ[1]
     );
     Ok((knobs.collect(), converged))
 }
