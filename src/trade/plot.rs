@@ -206,7 +206,9 @@ fn ladder(knob: &Knob) -> Drawing {
         } else {
             drawing.text([from + 9.0, y + 4.0], 11.0, Align::Left, GREY, "the reference");
         }
-        drawing.text([SIZE[0] - 14.0, y + 4.0], TEXT, Align::Right, INK, &format!("{:.0}", point.cost));
+        if point.cost.is_finite() {
+            drawing.text([SIZE[0] - 14.0, y + 4.0], TEXT, Align::Right, INK, &format!("{:.0}", point.cost));
+        }
     }
     drawing.text([SIZE[0] - 14.0, TOP - 4.0], 10.0, Align::Right, GREY, "cost");
     drawing.text([0.5 * (from + to), SIZE[1] - 14.0], TEXT, Align::Middle, INK, &format!("cost in {}", knob.cost_unit));
