@@ -30,6 +30,7 @@ pub mod turbulence;
 pub mod utc;
 pub mod wind;
 pub mod world;
+pub mod world_ground;
 
 pub use aircraft::{AircraftState, Condition};
 pub use clock::Clock;
