@@ -13,7 +13,7 @@ use sim::rigid::{Inputs, Model, Simulation};
 use std::path::Path;
 
 const INERTIA_KGM2: DVec3 = DVec3::new(10.0, 20.0, 26.0);
-const TABLE: &str = include_str!("data/flight/top_10_20_26.csv");
+const TABLE: &str = include_str!("data/top_10_20_26.csv");
 
 /// The top at its start.
 fn top(integrator: Integrator, step_s: f64) -> Simulation {

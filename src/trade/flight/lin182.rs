@@ -1,15 +1,15 @@
 //! A light aircraft with linear derivatives, written out by hand and for any float: the subject of the integrator trade.
 //!
 //! Like a Cessna 182: constant coefficients, constant density, constant gravity, a plane that does not turn, and pulses
-//! of elevator, aileron and rudder on whole seconds. The tests hold the same body as files for
-//! [`sim::rigid`]; both must fly alike to rounding, so each checks the other.
+//! of elevator, aileron and rudder on whole seconds. `assets/flight` holds the same body and flight as
+//! files for [`sim::rigid`]; both must fly alike to rounding, so each checks the other.
 //!
 //! State: position north, east, down (m); quaternion w, x, y, z from body to north, east, down; velocity north, east,
 //! down (m/s); rates about the body's axes (rad/s). SI and radians. Invariant others rely on: the quaternion is
 //! normalised after each step, and every step of one second has the same controls, so no pulse falls inside a step.
 //!
 //! Source: the derivatives are of the size that J. Roskam, Airplane Flight Dynamics, 1995, appendix B, gives for that
-//! class; the model and its reference solution (`data/flight/lin182.csv`, SciPy's DOP853 at 1e-11) are our own.
+//! class; the model and its reference solution (`sim/tests/data/lin182_scipy.csv`, SciPy's DOP853 at 1e-11) are our own.
 
 use num_traits::Float;
 use sim::integrate::{Before, Integrator, Motion, step};
@@ -188,53 +188,17 @@ mod tests {
     use super::*;
     use sim::case::Case;
     use sim::rigid::{Inputs, Model, Simulation};
-    use std::fmt::Write as _;
     use std::path::Path;
 
-    /// The same body as a model's file; numbers are printed with all their digits.
-    fn model_text() -> String {
-        let [ix, iy, iz] = INERTIA_KGM2;
-        let mut text = format!(
-            "[body]\nmass_kg = {MASS_KG}\ninertia_kgm2 = [[{ix}, 0, 0], [0, {iy}, 0], [0, 0, {iz}]]\n\
-             [reference]\narea_m2 = {AREA_M2}\nspan_m = {SPAN_M}\nchord_m = {CHORD_M}\n\
-             [controls]\nelevator_rad = {{min = -0.5, max = 0.5, initial = {ELEVATOR_RAD}}}\n\
-             aileron_rad = {{min = -0.5, max = 0.5}}\nrudder_rad = {{min = -0.5, max = 0.5}}\n\
-             [aero]\naxes = 'wind'\n[[thrust]]\nforce_N = [{THRUST_N}, 0, 0]\n"
-        );
-        for line in [
-            "CL .307; 4.41 alpha_rad; 3.9 q_hat; .43 elevator_rad",
-            "CD .027; .121 alpha_rad",
-            "CY -.393 beta_rad; -.075 p_hat; .214 r_hat; .187 rudder_rad",
-            "Cl -.0923 beta_rad; -.484 p_hat; .0798 r_hat; .229 aileron_rad; .0147 rudder_rad",
-            "Cm .04; -.613 alpha_rad; -12.4 q_hat; -1.122 elevator_rad",
-            "Cn .0587 beta_rad; -.0278 p_hat; -.0937 r_hat; -.0216 aileron_rad; -.0645 rudder_rad",
-        ] {
-            let (to, terms) = line.split_once(' ').unwrap();
-            for term in terms.split("; ") {
-                let (value, times) = term.split_once(' ').unwrap_or((term, ""));
-                let times = if times.is_empty() { String::new() } else { format!("'{times}'") };
-                let value: f64 = value.parse().unwrap();
-                let _ = write!(text, "[[aero.term]]\nto = '{to}'\nvalue = {value:?}\ntimes = [{times}]\n");
-            }
-        }
-        text
-    }
-
-    fn simulated(steps_hz: u32) -> [f64; 3] {
-        let model = Model::from_text(Path::new("lin182.toml"), &model_text()).unwrap();
-        let mut edges = String::from("t_s,elevator_rad,aileron_rad,rudder_rad\n");
-        for second in 0..SECONDS {
-            let [elevator, aileron, rudder] = controls(second);
-            let _ = writeln!(edges, "{second},{elevator},{aileron},{rudder}");
-        }
-        let inputs = Inputs::from_text(Path::new("i.csv"), &edges, &model.controls).unwrap();
-        let case = format!(
-            "[frame]\nkind = 'flat'\ng_mps2 = {GRAVITY_MPS2}\n[atmosphere]\nmodel = 'constant'\n\
-             density_kgpm3 = {DENSITY_KGPM3}\n[initial]\naltitude_m = {START_M}\nvelocity_body_mps = [{START_MPS}, 0, 0]\n\
-             [run]\nseconds = 60\ndt_s = {}\n",
-            1.0 / f64::from(steps_hz)
-        );
-        let case = Case::from_text(Path::new("c.toml"), &case).unwrap();
+    /// North, east, down at the end of the same flight by the general core, from its files.
+    fn simulated() -> [f64; 3] {
+        let model = include_str!("../../../assets/flight/models/lin182.toml");
+        let case = include_str!("../../../assets/flight/cases/lin182.toml");
+        let inputs = include_str!("../../../assets/flight/inputs/lin182.csv");
+        let model = Model::from_text(Path::new("lin182.toml"), model).unwrap();
+        let inputs = Inputs::from_text(Path::new("lin182.csv"), inputs, &model.controls).unwrap();
+        let case = Case::from_text(Path::new("case.toml"), case).unwrap();
+        assert_eq!((case.run.dt_s, case.run.seconds), (Some(1.0 / 60.0), Some(f64::from(SECONDS))));
         let mut flight = Simulation::new(model, &case, inputs, None).unwrap();
         flight.run(f64::from(SECONDS), 1e6, &[], |_, _| ());
         let y = flight.state();
@@ -244,7 +208,7 @@ mod tests {
     #[test]
     fn the_general_core_flies_it_alike_to_rounding() {
         let written: [f64; N] = fly(Integrator::Rk4, 60, SECONDS);
-        let [north, east, down] = simulated(60);
+        let [north, east, down] = simulated();
         let gap_m = (written[0] - north).hypot(written[1] - east).hypot(written[2] - down);
         println!("hand-written and general core after 60 s at 60 Hz: {gap_m:.2e} m apart");
         // Four kilometres have a rounding of 5e-13 m; 3,600 steps may add up to 2e-9 m but scatter.
@@ -253,7 +217,7 @@ mod tests {
 
     #[test]
     fn both_agree_with_an_independent_solution() {
-        const ROWS: &str = include_str!("../../../sim/tests/data/flight/lin182.csv");
+        const ROWS: &str = include_str!("../../../sim/tests/data/lin182_scipy.csv");
         let mut worst_m = 0f64;
         for line in ROWS.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit())) {
             let row: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
