@@ -123,9 +123,13 @@ fn over_cost(knob: &Knob) -> Drawing {
             dx > 0.0 && dx < 60.0 && dy.abs() < 14.0
         };
         // Beside a crowded curve: above it, on the side that it does not go to.
-        let rises = places.get(at + 1).is_some_and(|next| next[1] < y);
+        let rises = places.get(at + 1).is_some_and(|next| next[1] < y + 6.0);
         let left = if many { rises } else { places.iter().any(in_the_way) } || x > SIZE[0] - RIGHT - 60.0;
-        let (beside, above) = if many { (5.0, 7.0) } else { (9.0, -4.0) };
+        let (beside, above) = match many {
+            true if y > TOP + 12.0 => (5.0, 7.0),
+            true => (5.0, -15.0),
+            false => (9.0, -4.0),
+        };
         let (label_x, align) = if left { (x - beside, Align::Right) } else { (x + beside, Align::Left) };
         let label = if at == 0 { format!("{} {}", shown(point.setting), knob.unit) } else { shown(point.setting) };
         drawing.text([label_x, y - above], TEXT, align, COLOURS[0], &label);

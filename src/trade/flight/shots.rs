@@ -1,8 +1,9 @@
 //! The step of a shell: where it comes down after steps of 1 to 1,000 ms against where it comes down with the finest.
 //!
 //! Setting: milliseconds. Error: metres on the ground at the greatest range over a flat Earth with standard air. Cost:
-//! nanoseconds a step over the whole flight, with the search for its end. Reference: rk4 with steps of an eighth of a
-//! millisecond; drag curves bend at their nodes, which no rule of high order steps over at its full order.
+//! microseconds a simulated second of the whole flight, with the search for its end. Reference: rk4 with steps of an
+//! eighth of a millisecond. Drag curves bend at their nodes, which no rule of high order steps over at its full order;
+//! coarse steps are cut in pieces where drag is stiff (see `sim::ballistics::motion`), so their curve flattens.
 
 use super::ballistics::{PROJECTILES, case, farthest_deg};
 use super::{Effort, best, costs_s};
@@ -33,14 +34,15 @@ pub fn knobs(effort: Effort) -> Result<Vec<Knob>, Failure> {
             let case = case("", "us1976", speed_mps, degrees, step_ms * 1e-3, "")?;
             let flown = fly(&projectile, &case, None).map_err(|e| failed(e.to_string()))?;
             let aside_m = flown.end().get(Column::Z).unwrap_or(f64::NAN);
-            Ok::<_, Failure>(([flown.range_m, aside_m], flown.steps))
+            let time_s = flown.end().get(Column::Time).unwrap_or(f64::NAN);
+            Ok::<_, Failure>(([flown.range_m, aside_m], time_s))
         };
         let ([reach_m, aside_m], _) = end(REFERENCE_MS)?;
         let mut points = Vec::new();
         let mut works: Vec<Box<dyn FnMut() + '_>> = Vec::new();
         for &step_ms in rows {
-            let ([to_m, to_aside_m], steps) = end(step_ms)?;
-            points.push((step_ms, (to_m - reach_m).hypot(to_aside_m - aside_m), steps));
+            let ([to_m, to_aside_m], time_s) = end(step_ms)?;
+            points.push((step_ms, (to_m - reach_m).hypot(to_aside_m - aside_m), time_s));
             works.push(Box::new(move || {
                 let _ = black_box(end(black_box(step_ms)));
             }));
@@ -49,10 +51,10 @@ pub fn knobs(effort: Effort) -> Result<Vec<Knob>, Failure> {
         let points: Vec<KnobPoint> = points
             .iter()
             .zip(costs_s)
-            .map(|(&(setting, error, steps), cost_s)| KnobPoint {
+            .map(|(&(setting, error, time_s), cost_s)| KnobPoint {
                 setting,
                 error,
-                cost: cost_s * 1e9 / steps as f64,
+                cost: cost_s * 1e6 / time_s,
                 ..KnobPoint::default()
             })
             .collect();
@@ -60,7 +62,7 @@ pub fn knobs(effort: Effort) -> Result<Vec<Knob>, Failure> {
             name: format!("shell step {name}"),
             unit: "ms".into(),
             error_unit: format!("m on the ground at the greatest range, from steps of {REFERENCE_MS} ms"),
-            cost_unit: "ns a step of rk4".into(),
+            cost_unit: "microseconds a simulated second".into(),
             group: Some("shell step".into()),
             best: best(&points),
             points,
