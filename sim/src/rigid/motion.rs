@@ -150,8 +150,11 @@ impl RigidMotion {
         let course = model.course();
         let angles = uses(Quantity::RollRad) || uses(Quantity::PitchRad) || uses(Quantity::YawRad);
         let local = angles || course != Course::None || uses(Quantity::LatRad) || uses(Quantity::LonRad);
-        let place = if local || !self.still || uses(Quantity::AltitudeM) || self.atmosphere.depends_on_height() {
+        // Latitude and longitude cost a cosine or an arc tangent; mostly the height alone is asked.
+        let place = if local || !(self.still || self.flat()) {
             self.planet.place(position(y))
+        } else if !self.still || uses(Quantity::AltitudeM) || self.atmosphere.depends_on_height() {
+            Place { altitude_m: self.planet.altitude_m(position(y)), ..Place::default() }
         } else {
             Place::default()
         };
