@@ -184,9 +184,19 @@ mod tests {
             for (point, published) in knob.points.iter().zip(rows) {
                 let ours = [point.error_height, point.error_horizontal].map(|metres| metres.unwrap() / FOOT_M);
                 println!("{} {:?}: {ours:.3?} ft, published {published:?}", knob.name, point.label);
+                // The published g(h) lets the centrifugal part grow with height, ours does not: 3 omega2 h of acceleration,
+                // from 30,000 ft at the most.
+                let grows = point.label.as_deref() == Some("+ g(h)");
+                let left_out_ft = 3.0 * sim::planet::EARTH_ROTATION_RADPS.powi(2) * 30_000.0 * SECONDS * SECONDS / 2.0;
+                let left_out_ft = if grows { left_out_ft } else { 0.0 };
                 for part in 0..2 {
                     let gap_ft = (ours[part] - published[part]).abs();
-                    assert!(gap_ft < off_ft[part] + AGREED_FT, "{} {:?}: {gap_ft} ft", knob.name, point.label);
+                    assert!(
+                        gap_ft < off_ft[part] + AGREED_FT + left_out_ft,
+                        "{} {:?}: {gap_ft} ft",
+                        knob.name,
+                        point.label
+                    );
                 }
             }
         }
