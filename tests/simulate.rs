@@ -38,7 +38,7 @@ fn a_flight_is_told_as_rows_as_json_or_as_a_file() {
     assert_eq!((rows.status.code(), text(&rows.stderr).as_str()), (Some(0), ""));
     let rows = text(&rows.stdout);
     let mut lines = rows.lines();
-    assert_eq!(lines.next(), Some(format!("{HEADER},aileron_rad,elevator_rad,rudder_rad,event").as_str()));
+    assert_eq!(lines.next(), Some(format!("{HEADER},elevator_rad,aileron_rad,rudder_rad,event").as_str()));
     let lines: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
     assert_eq!(lines.len(), 601, "60 s at 0.1 s, start and end included");
     for (i, cells) in lines.iter().enumerate() {
@@ -49,7 +49,7 @@ fn a_flight_is_told_as_rows_as_json_or_as_a_file() {
     }
     assert_eq!((lines[0][45], lines[1][45], lines[600][45]), ("start", "", "end"));
     // The pulse of one second begins at 1 s, is turned at 2 s and over at 3 s.
-    let elevator = |row: usize| lines[row][43].parse::<f64>().unwrap();
+    let elevator = |row: usize| lines[row][42].parse::<f64>().unwrap();
     assert!(elevator(9) < elevator(10) && elevator(20) < elevator(9) && elevator(30) == elevator(0));
 
     let json = simulate(&folder, &[&flight[..], &["--json"]].concat());

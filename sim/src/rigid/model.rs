@@ -15,7 +15,6 @@ use crate::daveml::{Document, si_factor};
 use crate::file::{self, FileError};
 use crate::table::Table;
 use glam::{DMat3, DVec3};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -354,11 +353,11 @@ fn sources(path: &Path, file: &ModelFile) -> Result<Vec<Source>, FileError> {
     file.daveml.iter().map(one).collect()
 }
 
-fn controls(file: &BTreeMap<String, ControlFile>) -> Result<Vec<Control>, String> {
+fn controls(file: &[(String, ControlFile)]) -> Result<Vec<Control>, String> {
     if file.len() > MOST_CONTROLS {
         return Err(format!("controls: expected at most {MOST_CONTROLS}, found {}", file.len()));
     }
-    let one = |(name, control): (&String, &ControlFile)| {
+    let one = |(name, control): &(String, ControlFile)| {
         if without_unit(name).is_none() {
             return Err(format!("controls.{name}: expected a name that ends in a unit: {}", unit_names()));
         }

@@ -2,8 +2,10 @@
 
 use crate::case::Setting;
 use crate::table::Interpolation;
-use serde::Deserialize;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::PathBuf;
 
 #[derive(Deserialize)]
@@ -12,8 +14,8 @@ pub(super) struct ModelFile {
     pub body: Option<BodyFile>,
     #[serde(default)]
     pub reference: ReferenceFile,
-    #[serde(default)]
-    pub controls: BTreeMap<String, ControlFile>,
+    #[serde(default, deserialize_with = "in_order")]
+    pub controls: Vec<(String, ControlFile)>,
     #[serde(default)]
     pub aero: AeroFile,
     #[serde(default)]
@@ -22,6 +24,27 @@ pub(super) struct ModelFile {
     pub thrust: Vec<ThrustFile>,
     #[serde(default)]
     pub daveml: Vec<DavemlFile>,
+}
+
+/// A table's entries in the order of the file.
+fn in_order<'de, D: Deserializer<'de>>(table: D) -> Result<Vec<(String, ControlFile)>, D::Error> {
+    struct Entries;
+    impl<'de> Visitor<'de> for Entries {
+        type Value = Vec<(String, ControlFile)>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a table of controls, NAME = { min, max, initial }")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+            let mut entries = Vec::new();
+            while let Some(entry) = map.next_entry()? {
+                entries.push(entry);
+            }
+            Ok(entries)
+        }
+    }
+    table.deserialize_map(Entries)
 }
 
 #[derive(Deserialize)]
