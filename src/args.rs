@@ -206,7 +206,7 @@ pub struct SightArgs {
 /// `poligon simulate`
 #[derive(Debug, Args)]
 #[command(
-    after_help = "docs/simulate.md describes the files. Without --out and --json the rows go to stdout. A file that cannot be \
+    after_help = "docs/files.md describes the files. Without --out and --json the rows go to stdout. A file that cannot be \
                         used ends\nwith exit status 2, a flight that fails with 1; its rows up to there are written."
 )]
 pub struct SimulateArgs {

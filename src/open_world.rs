@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::output;
 use crate::progress::Progress;
+use sim::case::{Case, DEFAULT_WORLD};
 use std::path::Path;
 use std::sync::Arc;
 use terrain::block::ground_map::Climate;
@@ -26,6 +27,15 @@ pub fn open(path: Option<&Path>) -> Result<World, Failure> {
         output::tell(format_args!("poligon: {reason}"));
     }
     Ok(default.world)
+}
+
+/// The world that a case names, if it names one; `default` is the embedded one.
+///
+/// # Errors
+/// [`Failure::Failed`] as [`open`].
+pub fn of_case(case: &Case) -> Result<Option<World>, Failure> {
+    let Some(path) = &case.run.world else { return Ok(None) };
+    open(Some(path.as_path()).filter(|path| *path != Path::new(DEFAULT_WORLD))).map(Some)
 }
 
 /// All that blocks are made from, with masks for the limits of `rings`.

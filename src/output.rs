@@ -33,12 +33,20 @@ impl Output {
             Self::Json => serde_json::to_string(report).map_err(not_made)? + "\n",
             Self::Table => table(&to_value(report)?),
         };
-        match io::stdout().lock().write_all(text.as_bytes()) {
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                Err(Failure::while_doing("writing to stdout", error))
-            }
-            _ => Ok(()),
+        print_text(&text)
+    }
+}
+
+/// Prints a text to stdout as it is; for verbs whose rows are their output. A reader that has gone away is no error.
+///
+/// # Errors
+/// [`Failure::Failed`] if stdout cannot be written.
+pub fn print_text(text: &str) -> Result<(), Failure> {
+    match io::stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::while_doing("writing to stdout", error))
         }
+        _ => Ok(()),
     }
 }
 

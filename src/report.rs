@@ -752,6 +752,11 @@ mod tests {
             names(&heights),
             "points[].lat_deg points[].lon_deg points[].x_m points[].z_m points[].height_m points[].normal points[].surface"
         );
+        assert_eq!(
+            names(&TrajectoryReport::default()),
+            "range_m time_s speed_mps fall_deg aside_m drop_m mach lat_deg lon_deg altitude_m apex_altitude_m event tier \
+             elevation_deg azimuth_deg stability integrator dt_s steps rows out"
+        );
         assert_eq!(names(&Sight::default()), "visible hit clearance_min_m clearance_min_at_m distance_m ground_share");
         let result = BenchResult { yardstick: Some(Yardstick::default()), ..BenchResult::default() };
         assert_eq!(

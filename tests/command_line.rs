@@ -1,8 +1,10 @@
 //! The program from outside: exit status, what goes to which stream, help.
 
+use std::path::Path;
 use std::process::{Command, Output};
 
-const VERBS: [&str; 10] = ["fly", "bake", "info", "verify", "height", "sight", "trajectory", "shot", "bench", "trade"];
+const VERBS: [&str; 11] =
+    ["fly", "bake", "info", "verify", "height", "sight", "simulate", "trajectory", "shot", "bench", "trade"];
 
 /// A folder that is nowhere.
 const NO_WORLD: &str = "no/such/place.world";
@@ -53,10 +55,36 @@ fn help_and_version_go_to_stdout() {
 #[test]
 fn verbs_that_do_not_exist_yet_are_neither_listed_nor_taken() {
     let help = stdout(&poligon(&["--help"]));
-    for verb in ["simulate", "scenario", "instructor", "replay", "serve"] {
+    for verb in ["scenario", "instructor", "replay", "serve"] {
         assert!(!help.contains(verb), "{verb} is listed");
         assert_refused(&[verb], 2, &["unrecognized subcommand", verb]);
     }
+}
+
+#[test]
+fn a_trajectory_is_told_as_rows_as_json_or_as_a_file() {
+    let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/ballistics/");
+    let shell = format!("{assets}projectiles/308_175gr.toml");
+    let case = format!("{assets}cases/rifle_1000m.toml");
+    let shot = ["trajectory", "--projectile", &shell, "--case", &case];
+    let rows = poligon(&shot);
+    let text = stdout(&rows);
+    assert_eq!((rows.status.code(), stderr(&rows).as_str()), (Some(0), ""));
+    assert!(text.starts_with("t_s,x_m,y_m,z_m,drop_m,path_m,vx_mps,vy_mps,vz_mps,speed_mps,mach,lat_deg,"));
+    assert_eq!(text.lines().count(), 1 + 21, "a header and a row every 50 m");
+    assert!(text.ends_with(",range_m=1000\n"));
+    let json = stdout(&poligon(&[&shot[..], &["--json"]].concat()));
+    assert!(json.starts_with("{\"range_m\":1000") && json.lines().count() == 1, "{json}");
+    let told = stdout(&poligon(&[&shot[..], &["--out", "trajectory.csv"]].concat()));
+    assert!(told.contains("modified point mass"), "{told}");
+    let written = Path::new(env!("CARGO_TARGET_TMPDIR")).join("trajectory.csv");
+    assert_eq!(std::fs::read_to_string(&written).unwrap(), text);
+
+    assert_refused(&["trajectory", "--projectile", &shell], 2, &["--case"]);
+    assert_refused(&["trajectory", "--projectile", "no.toml", "--case", &case], 2, &["no.toml"]);
+    // The files the other way round: an unknown key is named.
+    assert_refused(&["trajectory", "--projectile", &case, "--case", &shell], 2, &["rifle_1000m.toml", "unknown field"]);
+    assert_refused(&[&shot[..], &["--out", "trajectory.csv/o.csv"]].concat(), 1, &["trajectory.csv/o.csv"]);
 }
 
 #[test]
@@ -103,7 +131,7 @@ fn what_cannot_be_done_ends_with_1_also_with_json() {
 
 #[test]
 fn a_file_of_points_is_read_to_its_line() {
-    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("points_with_a_gap.csv");
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("points_with_a_gap.csv");
     std::fs::write(&path, "x_m,z_m\n1,2\n3\n").unwrap();
     let path = path.to_str().unwrap();
     assert_refused(&["height", NO_WORLD, "--points", path], 1, &[path, "expected 2 values on line 3, found 1"]);

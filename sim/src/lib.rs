@@ -31,6 +31,7 @@ pub mod track;
 pub mod turbulence;
 pub mod utc;
 pub mod wind;
+pub mod world_ground;
 
 pub use aircraft::{AircraftState, Condition};
 pub use clock::Clock;

@@ -2,18 +2,17 @@
 
 use crate::args::SimulateArgs;
 use crate::failure::Failure;
+use crate::open_world;
 use crate::output::{self, Output};
 use crate::report::{Simulated, Stiffness, TrimFound};
 use sim::case::Case;
 use sim::file::FileError;
 use sim::rigid::column::COLUMNS;
-use sim::rigid::simulation::{Ending, Terrain};
+use sim::rigid::simulation::Ending;
 use sim::rigid::stop::Stop;
 use sim::rigid::{Inputs, Model, Simulation};
+use sim::world_ground::WorldGround;
 use std::fmt::Write as _;
-use std::io::Write as _;
-use terrain::Ground;
-use terrain::store::World;
 
 /// Runs the verb.
 ///
@@ -34,13 +33,10 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), Failure> {
     if case.shot.is_some() {
         return Err(wrong("shot: expected none, it is for `poligon trajectory`".to_owned()));
     }
-    let terrain = match &case.run.world {
-        Some(path) => Some(terrain(&World::read(path).map_err(|e| Failure::while_doing("reading the world", e))?)),
-        None => None,
-    };
+    let ground = open_world::of_case(&case)?.map(|world| WorldGround::new(&world, &case));
     let names: Vec<String> =
         COLUMNS.iter().map(|name| (*name).to_owned()).chain(model.controls.iter().map(|c| c.name.clone())).collect();
-    let mut flight = Simulation::new(model, &case, inputs, terrain).map_err(unusable)?;
+    let mut flight = Simulation::new(model, &case, inputs, ground).map_err(unusable)?;
     let stops: Vec<Stop> = case
         .run
         .stop
@@ -62,7 +58,7 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), Failure> {
     });
     match &args.out {
         Some(file) => output::write_whole(file, text.as_bytes())?,
-        None if output == Output::Table => print(&text)?,
+        None if output == Output::Table => output::print_text(&text)?,
         None => {}
     }
     let fastest = flight.stiffness;
@@ -99,11 +95,6 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), Failure> {
     }
 }
 
-/// The ground of a world, all of it at hand.
-fn terrain(world: &World) -> Terrain {
-    Terrain { area: Ground::new(world.field.clone()).whole(), projection: world.projection.clone() }
-}
-
 /// A row; what is not known is an empty cell. Numbers read back to the same bits.
 fn write_row(text: &mut String, row: &[f64], event: &str) {
     for value in row {
@@ -111,14 +102,4 @@ fn write_row(text: &mut String, row: &[f64], event: &str) {
         let _ = if value.is_finite() { write!(text, "{value:?},") } else { write!(text, ",") };
     }
     let _ = writeln!(text, "{event}");
-}
-
-/// Rows to stdout; a reader that has gone away is no error.
-fn print(text: &str) -> Result<(), Failure> {
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::while_doing("writing to stdout", error))
-        }
-        _ => Ok(()),
-    }
 }

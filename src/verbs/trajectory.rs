@@ -12,10 +12,9 @@ use sim::ballistics::column::Column;
 use sim::ballistics::drift::MOST_STABILITY;
 use sim::ballistics::projectile::Projectile;
 use sim::ballistics::trajectory::{Trajectory, TrajectoryError, fly};
-use sim::ballistics::world_ground::WorldGround;
 use sim::case::Case;
-use std::io::{self, Write as _};
-use std::path::{Path, PathBuf};
+use sim::world_ground::WorldGround;
+use std::path::Path;
 
 /// Runs the verb.
 ///
@@ -25,7 +24,7 @@ pub fn run(args: &TrajectoryArgs, output: Output) -> Result<(), Failure> {
     let misuse = |error: sim::file::FileError| Failure::Misuse(error.to_string());
     let projectile = Projectile::read(&args.projectile).map_err(misuse)?;
     let case = Case::read(&args.case).map_err(misuse)?;
-    let world = case.run.world.as_deref().map(|path| open_world::open(Some(path))).transpose()?;
+    let world = open_world::of_case(&case)?;
     let ground = world.as_ref().map(|world| WorldGround::new(world, &case));
     let flown = fly(&projectile, &case, ground.as_ref()).map_err(|error| match error {
         TrajectoryError::Input(error) => misuse(error),
@@ -38,15 +37,10 @@ pub fn run(args: &TrajectoryArgs, output: Output) -> Result<(), Failure> {
         output::tell(format_args!("poligon: gyroscopic stability {stability:.2}: spin drift is no estimate there"));
     }
     if let Some(path) = &args.out {
-        write(path, &flown.to_csv())?;
+        output::write_whole(path, flown.to_csv().as_bytes())?;
     }
     match (output, &args.out) {
-        (Output::Table, None) => match io::stdout().lock().write_all(flown.to_csv().as_bytes()) {
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                Err(Failure::while_doing("writing to stdout", error))
-            }
-            _ => Ok(()),
-        },
+        (Output::Table, None) => output::print_text(&flown.to_csv()),
         _ => output.print(&report(&flown, &projectile, &case, args.out.as_deref())),
     }
 }
@@ -82,14 +76,4 @@ fn report(flown: &Trajectory, projectile: &Projectile, case: &Case, out: Option<
         rows: flown.rows.len(),
         out: out.map(|path| path.display().to_string()),
     }
-}
-
-/// Writes a file beside its place and renames it there, so that a reader finds a whole one or none.
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    let failed = |error: io::Error| Failure::while_doing(format_args!("writing {}", path.display()), error);
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    let beside = PathBuf::from(beside);
-    std::fs::write(&beside, text).map_err(failed)?;
-    std::fs::rename(&beside, path).map_err(failed)
 }

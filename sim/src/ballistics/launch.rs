@@ -95,7 +95,8 @@ impl Launch {
                 }
                 let level = released_ned.x.hypot(released_ned.y);
                 let azimuth = if level > 0.0 { released_ned.y.atan2(released_ned.x) } else { 0.0 };
-                (azimuth, (-released_ned.z).atan2(level), released_ned.length())
+                // 0 - z and not -z: a level release has no elevation of -0.
+                (azimuth, (0.0 - released_ned.z).atan2(level), released_ned.length())
             }
         };
         let frame_from_ned = case.planet.frame_from_ned(place);
@@ -180,7 +181,7 @@ fn zero_rad(
         let next = high - (high_m * (high - low) / (high_m - low_m)).clamp(-0.3, 0.3);
         (low, low_m) = (high, high_m);
         high = next;
-        if !(high.abs() < 1.4) {
+        if high.is_nan() || high.abs() > 1.4 {
             return Err(short());
         }
     }

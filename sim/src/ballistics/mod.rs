@@ -21,4 +21,3 @@ pub mod projectile;
 pub mod shape;
 pub mod targets;
 pub mod trajectory;
-pub mod world_ground;

@@ -8,9 +8,9 @@ use super::drift::SpinDrift;
 use super::geodesic;
 use super::launch::Launch;
 use super::motion::{ShellMotion, State, parts, state};
-use super::world_ground::WorldGround;
 use crate::case::Case;
 use crate::planet::Place;
+use crate::world_ground::WorldGround;
 use glam::DVec3;
 
 /// Sees the states of one shot.

@@ -7,22 +7,23 @@
 //!
 //! What ends a shot first: `shot.until`, any of `run.stop`, `run.seconds`. With none of them it is the ground of
 //! `run.world`; without a world the muzzle's altitude on the way down, or, for a shot that does not climb at first, the
-//! altitude 0. In any case it ends after an hour (event `time`) or 12 km below both the muzzle and altitude 0 (event `floor`).
+//! altitude 0. Without `run.seconds` it ends in any case after an hour (event `time`) or 12 km below both the muzzle and
+//! altitude 0 (event `floor`).
 //! A muzzle in or under the ground, where ground ends a shot, ends it at once.
 
 use super::column::{Column, End, IN_FILE, NAMES, Relation};
 use super::drift::SpinDrift;
 use super::launch::{Launch, STEP_S};
-use super::motion::{ShellMotion, State, StepError, advance, state};
+use super::motion::{ShellMotion, State, StepError, advance, parts, state};
 use super::observer::Observer;
 use super::projectile::Projectile;
-use super::world_ground::WorldGround;
 use crate::case::{Case, MOST_STEPS};
 use crate::file::FileError;
 use crate::integrate::Before;
+use crate::world_ground::WorldGround;
 use std::fmt;
 
-/// Longest flight, seconds.
+/// Longest flight where a case gives none, seconds.
 pub const LONGEST_S: f64 = 3_600.0;
 /// How far below muzzle and altitude 0 a shot is followed, metres.
 pub const FLOOR_M: f64 = 12_000.0;
@@ -183,7 +184,7 @@ impl<'a> Flight<'a> {
             ends,
             every,
             longest_s: case.run.seconds.unwrap_or(LONGEST_S),
-            floor_m: muzzle_m.min(0.0) - FLOOR_M,
+            floor_m: if case.run.seconds.is_some() { f64::NEG_INFINITY } else { muzzle_m.min(0.0) - FLOOR_M },
             dt_s: case.run.dt_s.unwrap_or(STEP_S),
             start,
         })
@@ -209,7 +210,8 @@ impl<'a> Flight<'a> {
             taken += pieces;
             let end = self.first_end(&step, &next)?;
             let (last_s, last) = end.as_ref().map_or((step.length_s, next), |(cut_s, last, _)| (*cut_s, *last));
-            next_row = self.rows_within(&step, last_s, &last, end.is_some(), next_row, &mut rows)?;
+            let over = end.is_some() || to_s >= self.longest_s;
+            next_row = self.rows_within(&step, last_s, &last, over, next_row, &mut rows)?;
             apex_m = apex_m.max(self.highest_m(&step, last_s, &last)?);
             if let Some((cut_s, last, event)) = end {
                 return Ok(self.finished(rows, t_s + cut_s, last, event, apex_m, taken));
@@ -241,7 +243,7 @@ impl<'a> Flight<'a> {
             End::Return => false,
             // A path of no length: on or under the ground, or not.
             End::Ground if self.observer.ground.is_some() => {
-                self.observer.ground.is_some_and(|ground| ground.impact(&seen, &seen, 1.0).is_some())
+                self.observer.ground.is_some_and(|ground| ground.impact(parts(&seen), parts(&seen), 1.0).is_some())
             }
             End::Ground => {
                 let altitude_m = self.observer.altitude_m(&seen);
@@ -275,7 +277,7 @@ impl<'a> Flight<'a> {
             let cut_s = match end {
                 End::Ground if observer.ground.is_some() => observer
                     .ground
-                    .and_then(|ground| ground.impact(&from, &to, step.length_s))
+                    .and_then(|ground| ground.impact(parts(&from), parts(&to), step.length_s))
                     .map(|impact| impact.time_s),
                 End::Ground | End::Return => {
                     let level_m = if *end == End::Ground { 0.0 } else { muzzle_m };
@@ -341,7 +343,7 @@ impl<'a> Flight<'a> {
         step: &Step,
         last_s: f64,
         last: &State,
-        ends: bool,
+        over: bool,
         mut next_row: u64,
         rows: &mut Vec<Row>,
     ) -> Result<u64, TrajectoryError> {
@@ -355,8 +357,7 @@ impl<'a> Flight<'a> {
                 (metres, range(step.from_s + last_s, last), range(step.from_s, &step.from))
             }
         };
-        // The end has its own row; the longest flight ends on a step's end.
-        let over = ends || step.from_s + last_s >= self.longest_s;
+        // The end has its own row.
         let before = if over { reached - SAME_ROW * every } else { reached };
         while next_row as f64 * every <= before {
             let target = next_row as f64 * every;
@@ -371,7 +372,9 @@ impl<'a> Flight<'a> {
                 }
             };
             let y = if cut_s < last_s { self.at(step, cut_s)? } else { *last };
-            rows.push(self.row(step.from_s + cut_s, &y, ""));
+            // A multiple of a time is printed as that, without the rounding of the sum.
+            let t_s = if matches!(self.every, Every::Seconds(_)) { target } else { step.from_s + cut_s };
+            rows.push(self.row(t_s, &y, ""));
             if rows.len() > MOST_ROWS {
                 return Err(TrajectoryError::TooMuch { what: "rows", most: MOST_ROWS as f64, t_s: step.from_s });
             }

@@ -17,6 +17,9 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+/// The name of the embedded world in [`Run::world`].
+pub const DEFAULT_WORLD: &str = "default";
+
 /// Most steps of one run: an hour at 10 kHz, twice.
 pub const MOST_STEPS: f64 = 72e6;
 
@@ -134,7 +137,7 @@ pub struct Run {
     pub integrator: Integrator,
     /// What ends it early: `ground`, or a column below or above a value.
     pub stop: Vec<String>,
-    /// The world whose ground is met.
+    /// The world whose ground is met: its folder, or [`DEFAULT_WORLD`].
     pub world: Option<PathBuf>,
 }
 
@@ -143,7 +146,7 @@ pub struct Run {
 pub struct Shot {
     /// Speed at the muzzle over the Earth, m/s.
     pub speed_mps: Option<f64>,
-    /// Elevation of the bore over the horizon, or over the line of sight where there is a zero range.
+    /// Added to `look_angle_rad` and to what the zero asks for; the sum is the bore's elevation over the horizon.
     pub elevation_rad: f64,
     /// Clockwise from north.
     pub azimuth_rad: f64,

@@ -1,6 +1,6 @@
 //! The file of a case as it is written, and every check on the way to a [`Case`].
 
-use super::{Attitude, Case, Initial, MOST_STEPS, RatesFrame, Run, Shot, Trim, Turbulence, Velocity};
+use super::{Attitude, Case, DEFAULT_WORLD, Initial, MOST_STEPS, RatesFrame, Run, Shot, Trim, Turbulence, Velocity};
 use crate::atmosphere::{AirSample, Atmosphere, Layers, Station};
 use crate::integrate::Integrator;
 use crate::planet::{
@@ -11,6 +11,7 @@ use crate::wind::Wind;
 use glam::DVec3;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
+use terrain::WGS84;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -225,15 +226,19 @@ impl FrameFile {
             }
             FrameKind::Round => (Shape::Round { radius_m }, EARTH_ROTATION_RADPS),
             FrameKind::Ellipsoid => {
-                if let Some(found) = self.radius_m {
-                    return Err(format!("frame.radius_m: expected none, the ellipsoid is WGS84, found {found}"));
+                let of_wgs84 = |radius_m: &f64| (radius_m - WGS84.a_m).abs() < 1.0;
+                if let Some(found) = self.radius_m.filter(|radius_m| !of_wgs84(radius_m)) {
+                    return Err(format!(
+                        "frame.radius_m: expected none or that of WGS84, {}, found {found}",
+                        WGS84.a_m
+                    ));
                 }
                 (Shape::Ellipsoid, EARTH_ROTATION_RADPS)
             }
         };
-        if self.kind != FrameKind::Flat
-            && let Some(found) = self.latitude_deg
-        {
+        // Elsewhere the latitude is the body's own; the same number there is no contradiction.
+        let other = |lat_deg: &f64| (lat_deg.to_radians() - place.lat_rad).abs() > 1e-9;
+        if let Some(found) = self.latitude_deg.filter(|lat| self.kind != FrameKind::Flat && other(lat)) {
             return Err(format!("frame.latitude_deg: expected only in a flat frame, found {found}"));
         }
         Ok(Planet { shape, gravity, rotation_radps: self.rotation_radps.unwrap_or(turning) })
@@ -380,7 +385,10 @@ impl RunFile {
         if let (Some(seconds), Some(dt_s)) = (self.seconds, self.dt_s) {
             within("run.seconds / run.dt_s", Some(seconds / dt_s), 0.0, MOST_STEPS)?;
         }
-        let beside = |world: PathBuf| file.parent().map_or_else(|| world.clone(), |folder| folder.join(&world));
+        let beside = |world: PathBuf| match file.parent() {
+            Some(folder) if world.as_os_str() != DEFAULT_WORLD => folder.join(world),
+            _ => world,
+        };
         Ok(Run {
             seconds: self.seconds,
             dt_s: self.dt_s,

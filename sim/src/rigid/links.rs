@@ -47,13 +47,16 @@ pub struct Links {
     pub(super) quantities: BTreeSet<usize>,
 }
 
+/// A slot, and what its number is multiplied with to have another unit.
+type Scaled = (usize, f64);
+
 #[derive(Debug, Clone)]
 struct Link {
     program: Program,
-    /// Slots to add up, each with what turns its unit into the file's.
-    inputs: Vec<(usize, f64, Option<(usize, f64)>)>,
-    /// Slot, and what turns the file's unit into SI.
-    outputs: Vec<(usize, f64)>,
+    /// One slot, or two to add up, into the file's units.
+    inputs: Vec<(Scaled, Option<Scaled>)>,
+    /// The file's units into SI.
+    outputs: Vec<Scaled>,
 }
 
 /// Memory of all programs of a model, for one thread.
@@ -77,8 +80,8 @@ const MOMENT_NAMES: [&str; 3] = ["thrustBodyMoment_Roll", "thrustBodyMoment_Pitc
 /// Where an input comes from.
 enum From {
     Number(f64),
-    /// Slots to add up, each with what turns its unit into SI.
-    Slots((usize, f64), Option<(usize, f64)>),
+    /// One slot, or two to add up, into SI.
+    Slots(Scaled, Option<Scaled>),
     Output(usize, String),
     Initial,
 }
@@ -168,7 +171,8 @@ impl Links {
             };
             let per_unit = 1.0 / unit(source, variable)?;
             names.push(variable.id.as_str());
-            inputs.push((first.0, first.1 * per_unit, second.map(|(slot, si)| (slot, si * per_unit))));
+            let scaled = |(slot, si): Scaled| (slot, si * per_unit);
+            inputs.push((scaled(first), second.map(scaled)));
             self.quantities.extend([Some(first), second].into_iter().flatten().map(|(slot, _)| slot));
         }
         let wanted: Vec<&str> = outputs.iter().map(|name| name.as_str()).collect();
@@ -191,7 +195,7 @@ impl Links {
     #[inline]
     pub fn run(&self, slots: &mut [f64; SLOTS], memory: &mut LinkMemory, coefficients: &mut [f64; COEFFICIENTS]) {
         for (link, (memory, inputs, outputs)) in self.links.iter().zip(&mut memory.0) {
-            for (input, &(first, factor, second)) in inputs.iter_mut().zip(&link.inputs) {
+            for (input, &((first, factor), second)) in inputs.iter_mut().zip(&link.inputs) {
                 *input = slots[first] * factor + second.map_or(0.0, |(slot, factor)| slots[slot] * factor);
             }
             link.program.run(inputs, memory, outputs);

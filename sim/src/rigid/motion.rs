@@ -101,10 +101,19 @@ pub fn state(position: DVec3, attitude: DQuat, cross_track_m: f64, velocity: DVe
     [x, y, z, q.w, q.x, q.y, q.z, cross_track_m, vx, vy, vz, p, qr, r]
 }
 
-/// The state with its quaternion of length 1.
+/// Components of velocity (m/s) and rates (rad/s) below this are rest: what only decays would end in denormal numbers,
+/// which are slow, and no output shows thirty digits.
+const REST: f64 = 1e-30;
+
+/// The state with its quaternion of length 1, and at rest where it hardly moves.
 pub fn normalised(mut y: State) -> State {
     let q = attitude(&y);
     (y[3], y[4], y[5], y[6]) = (q.w, q.x, q.y, q.z);
+    for component in &mut y[8..] {
+        if component.abs() < REST {
+            *component = 0.0;
+        }
+    }
     y
 }
 

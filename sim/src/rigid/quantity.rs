@@ -76,7 +76,7 @@ impl Quantity {
     /// The quantity of a name in AIAA S-119; small and capital letters count alike.
     pub fn in_s119(name: &str) -> Option<Self> {
         let is = |known: &&str| known.eq_ignore_ascii_case(name);
-        ALL.iter().find(|(.., known)| known.iter().any(|k| is(k))).map(|(quantity, ..)| *quantity)
+        ALL.iter().find(|(.., known)| known.iter().any(is)).map(|(quantity, ..)| *quantity)
     }
 }
 
@@ -117,7 +117,7 @@ mod tests {
                 assert_eq!(Quantity::in_s119(&known.to_uppercase()), Some(*quantity));
             }
         }
-        assert!(QUANTITIES + MOST_CONTROLS < SLOTS);
+        const { assert!(QUANTITIES + MOST_CONTROLS < SLOTS) };
     }
 
     #[test]

@@ -16,30 +16,20 @@ use super::start;
 use super::stiffness::{MOST_PIECES, Stiffness};
 use super::stop::Stop;
 use super::trim::{self, Trimmed};
-use crate::ballistics::impact::ground_impact;
-use crate::ballistics::path::StepPath;
 use crate::case::{Case, Setting};
 use crate::file::FileError;
 use crate::integrate::{self, Before, Integrator, Motion};
-use crate::planet::{Place, Shape};
+use crate::planet::Place;
 use crate::turbulence::Dryden;
-use glam::{DVec2, DVec3};
+use crate::world_ground::WorldGround;
 use std::sync::Arc;
-use terrain::{Area, Geodetic, Projection};
 
 /// Times nearer to each other than this are one, seconds.
 const SAME_S: f64 = 1e-9;
+/// A start this near to a stop does not stop: a height of 0 over the ellipsoid is known to a nanometre only.
+const ON_IT: f64 = 1e-6;
 /// Steps between two looks at how stiff the flow makes the body.
 const STEPS_A_LOOK: u32 = 16;
-
-/// Ground that a flight meets.
-#[derive(Debug, Clone)]
-pub struct Terrain {
-    /// The ground.
-    pub area: Area,
-    /// Between its plane and the Earth.
-    pub projection: Projection,
-}
 
 /// How a flight ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,7 +58,7 @@ pub struct Simulation {
     integrator: Integrator,
     dt_s: f64,
     datum: Datum,
-    terrain: Option<Terrain>,
+    ground: Option<WorldGround>,
     gust: Option<Dryden>,
     inputs: Inputs,
     next_edge: usize,
@@ -84,7 +74,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`FileError`] names the key of the case: a step is missing, trim finds nothing, the body is too stiff.
-    pub fn new(model: Model, case: &Case, inputs: Inputs, terrain: Option<Terrain>) -> Result<Self, FileError> {
+    pub fn new(model: Model, case: &Case, inputs: Inputs, ground: Option<WorldGround>) -> Result<Self, FileError> {
         let fail = |why: String| FileError::new(&case.file, why);
         let Some(dt_s) = case.run.dt_s else {
             return Err(fail("run.dt_s: expected a step in seconds, found none".to_owned()));
@@ -92,11 +82,6 @@ impl Simulation {
         let model = Arc::new(model);
         let mut motion = RigidMotion::new(model, case.planet, case.atmosphere.clone(), case.wind.clone());
         let mut initial = case.initial;
-        if let (Some(terrain), Shape::Flat { .. }, None) = (&terrain, case.planet.shape, initial.flat_m) {
-            let place = Geodetic { lat_rad: initial.place.lat_rad, lon_rad: initial.place.lon_rad };
-            let plan = terrain.projection.to_world(place);
-            initial.flat_m = Some(DVec3::new(-plan.y, plan.x, -initial.place.altitude_m));
-        }
         let mut trimmed = None;
         if let Some(wanted) = &case.trim {
             let found = trim::trim(&mut motion, &initial, wanted).map_err(fail)?;
@@ -115,7 +100,7 @@ impl Simulation {
             integrator: case.run.integrator,
             dt_s,
             datum,
-            terrain,
+            ground,
             gust,
             inputs,
             next_edge: 0,
@@ -196,27 +181,12 @@ impl Simulation {
     /// The place of a state; over a world's plane by the world's projection.
     fn place(&self, y: &State) -> Place {
         let position = motion::position(y);
-        match (&self.terrain, self.motion.planet.shape) {
-            (Some(terrain), Shape::Flat { .. }) => {
-                let at = terrain.projection.to_geodetic(DVec2::new(position.y, -position.x));
-                Place { lat_rad: at.lat_rad, lon_rad: at.lon_rad, altitude_m: -position.z }
-            }
-            _ => self.motion.planet.place(position),
-        }
+        self.ground.as_ref().map_or_else(|| self.motion.planet.place(position), |ground| ground.place(position))
     }
 
     /// Ground under a state, metres; 0 where no world is named, `None` over void.
     fn ground_m(&self, y: &State) -> Option<f64> {
-        let Some(terrain) = &self.terrain else { return Some(0.0) };
-        let position = motion::position(y);
-        let plan = match self.motion.planet.shape {
-            Shape::Flat { .. } => DVec2::new(position.y, -position.x),
-            _ => {
-                let place = self.motion.planet.place(position);
-                terrain.projection.to_world(Geodetic { lat_rad: place.lat_rad, lon_rad: place.lon_rad })
-            }
-        };
-        terrain.area.height_m(plan.x, plan.y)
+        self.ground.as_ref().map_or(Some(0.0), |ground| ground.height_m(motion::position(y)))
     }
 
     /// Applies the inputs up to now.
@@ -311,7 +281,7 @@ impl Simulation {
         let mut rows = 1.0;
         let mut row = self.row();
         emit(&row, "start");
-        if let Some(stop) = stops.iter().find(|stop| self.stopped(stop, self.t_s, &self.y)) {
+        if let Some(stop) = stops.iter().find(|stop| self.stopped(stop, self.t_s, &self.y, ON_IT)) {
             return Ending::Stop(stop.words.clone());
         }
         while self.t_s < end_s - SAME_S {
@@ -327,7 +297,7 @@ impl Simulation {
                 let t_s = first_s + rows * row_s;
                 rows += 1.0;
                 let y = self.glimpse(t_s - self.t_s);
-                if y.iter().all(|x| x.is_finite()) && !stops.iter().any(|stop| self.stopped(stop, t_s, &y)) {
+                if y.iter().all(|x| x.is_finite()) && !stops.iter().any(|stop| self.stopped(stop, t_s, &y, 0.0)) {
                     emit(&self.row_of(t_s, &y), "");
                 }
             }
@@ -365,8 +335,8 @@ impl Simulation {
         (self.t_s, self.y, self.before) = (t_s, y, before);
     }
 
-    fn stopped(&self, stop: &Stop, t_s: f64, y: &State) -> bool {
-        stop.holds(|place| match (place, COLUMNS.get(place)) {
+    fn stopped(&self, stop: &Stop, t_s: f64, y: &State, margin: f64) -> bool {
+        stop.holds(margin, |place| match (place, COLUMNS.get(place)) {
             (column::AGL, _) => self.ground_m(y).map_or(f64::INFINITY, |ground| self.place(y).altitude_m - ground),
             (_, Some(&"altitude_m")) => self.motion.planet.altitude_m(motion::position(y)),
             (place, _) => self.row_of(t_s, y)[place],
@@ -378,10 +348,12 @@ impl Simulation {
         let step_s = self.t_s - good.0;
         let mut first: Option<(f64, &Stop)> = None;
         for stop in stops {
-            let swept = self.path_over_ground(good.0, &good.1).filter(|_| stop.is_ground());
-            let ahead_s = match swept {
-                Some((area, path)) => ground_impact(&path, area).map(|impact| impact.fraction * step_s),
-                None => self.stopped(stop, self.t_s, &self.y).then(|| self.crossing_s(stop, good, step_s)),
+            let ends = |y: &State| (motion::position(y), motion::velocity(y));
+            let ahead_s = match &self.ground {
+                Some(ground) if stop.is_ground() => {
+                    ground.impact(ends(&good.1), ends(&self.y), step_s).map(|impact| impact.time_s)
+                }
+                _ => self.stopped(stop, self.t_s, &self.y, 0.0).then(|| self.crossing_s(stop, good, step_s)),
             };
             if let Some(ahead_s) = ahead_s.filter(|ahead_s| first.is_none_or(|(before, _)| *ahead_s < before)) {
                 first = Some((ahead_s, stop));
@@ -400,22 +372,8 @@ impl Simulation {
                 break;
             }
             let there = self.glimpse_from(good.0, &good.1, middle);
-            if self.stopped(stop, good.0 + middle, &there) { high = middle } else { low = middle }
+            if self.stopped(stop, good.0 + middle, &there, 0.0) { high = middle } else { low = middle }
         }
         high
-    }
-
-    /// The area, and the path of the step up to now in the world's axes, where the frame is the world's plane.
-    fn path_over_ground(&self, from_s: f64, from: &State) -> Option<(&Area, StepPath)> {
-        let (Some(terrain), Shape::Flat { .. }) = (&self.terrain, self.motion.planet.shape) else { return None };
-        let world = |ned: DVec3| DVec3::new(ned.y, -ned.z, -ned.x);
-        let path = StepPath {
-            from_m: world(motion::position(from)),
-            from_mps: world(motion::velocity(from)),
-            to_m: world(motion::position(&self.y)),
-            to_mps: world(motion::velocity(&self.y)),
-            step_s: self.t_s - from_s,
-        };
-        Some((&terrain.area, path))
     }
 }

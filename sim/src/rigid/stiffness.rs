@@ -1,7 +1,8 @@
 //! How short a step must be: the fastest mode of a body in the air, against what an integrator holds.
 //!
-//! At load the accelerations are differentiated by the body's velocity and rates (6 x 6, central differences) at the
-//! initial attitude to the air, at the never-exceed speed or the initial one, whichever is greater; the greatest size
+//! At load the accelerations are differentiated by the body's velocity and rates (6 x 6, differences over a twentieth of
+//! the speed; of the two sides the flatter one, so that the jump of the angle of attack at +-180 degrees is no mode) at
+//! the initial attitude to the air, at the never-exceed speed or the initial one, whichever is greater; the greatest size
 //! of its eigenvalues comes from a high power of the matrix (Gelfand's formula). Aerodynamic modes scale with density
 //! times speed, so one number serves the whole flight: lambda = `per_flow` x density x speed.
 //!
@@ -57,9 +58,10 @@ fn jacobian(motion: &RigidMotion, base: &State, speed_mps: f64) -> [[f64; 6]; 6]
     let first = N - 6;
     let length = motion.model.span_m.max(motion.model.chord_m).max(1e-3);
     let unit = |place: usize| if place < 3 { 1.0 } else { 1.0 / length };
+    let centre = motion.rate(0.0, base);
     let mut all = [[0.0; 6]; 6];
     for place in 0..6 {
-        let small = 1e-4 * speed_mps * unit(place);
+        let small = 0.05 * speed_mps * unit(place);
         let side = |by: f64| {
             let mut y = *base;
             y[first + place] += by;
@@ -67,7 +69,10 @@ fn jacobian(motion: &RigidMotion, base: &State, speed_mps: f64) -> [[f64; 6]; 6]
         };
         let (above, below) = (side(small), side(-small));
         for (row, entries) in all.iter_mut().enumerate() {
-            entries[place] = (above[first + row] - below[first + row]) / (2.0 * small) * unit(place) / unit(row);
+            let i = first + row;
+            let (up, down) = (above[i] - centre[i], centre[i] - below[i]);
+            let flatter = if up.abs() < down.abs() { up } else { down };
+            entries[place] = flatter / small * unit(place) / unit(row);
         }
     }
     all

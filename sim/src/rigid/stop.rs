@@ -1,7 +1,7 @@
 //! What ends a run early: `ground`, or a column below or above a value, as `altitude_m<0`.
 //!
-//! `ground` is the height above the ground falling below 0: over a world's plane by the swept path, so that no ridge is
-//! passed through; elsewhere at the step's ends.
+//! `ground` is the height above the ground falling below 0: over a world by the swept path, so that no ridge is
+//! passed through; elsewhere the height itself.
 
 use super::column;
 use super::motion::RigidMotion;
@@ -40,9 +40,9 @@ impl Stop {
         self.ground
     }
 
-    /// Whether it holds; `column` gives the value of a column.
-    pub fn holds(&self, column: impl Fn(usize) -> f64) -> bool {
-        let value = column(self.place);
-        if self.below { value < self.value } else { value > self.value }
+    /// Whether it holds by more than `margin`; `column` gives the value of a column.
+    pub fn holds(&self, margin: f64, column: impl Fn(usize) -> f64) -> bool {
+        let beyond = column(self.place) - self.value;
+        if self.below { -beyond > margin } else { beyond > margin }
     }
 }

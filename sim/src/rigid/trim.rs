@@ -59,7 +59,8 @@ pub fn trim(motion: &mut RigidMotion, initial: &Initial, wanted: &Trim) -> Resul
         let found = wanted.vary.len();
         return Err(format!("trim.vary: expected 1 to {} names, found {found}", RESIDUALS.len()));
     }
-    let unknowns = wanted.vary.iter().map(|name| unknown(&model, name)).collect::<Result<Vec<_>, _>>()?;
+    let meant = wanted.vary.iter().map(|name| unknown(&model, name)).collect::<Result<Vec<_>, _>>()?;
+    let (unknowns, units): (Vec<Unknown>, Vec<f64>) = meant.into_iter().unzip();
     let mut angles = match initial.attitude {
         Attitude::Angles(angles) => angles,
         Attitude::Quaternion(_) => motion::angles_of(&glam::DMat3::from_quat(start::ned_from_body(&initial.attitude))),
@@ -107,35 +108,35 @@ pub fn trim(motion: &mut RigidMotion, initial: &Initial, wanted: &Trim) -> Resul
     let residuals: Vec<(&'static str, f64)> = RESIDUALS.into_iter().zip(left.iter().copied()).collect();
     if size(&left) >= HELD {
         let told: Vec<String> = residuals.iter().map(|(name, value)| format!("{name} {value:.3e}")).collect();
-        let at: Vec<String> = wanted.vary.iter().zip(&x).map(|(name, value)| format!("{name} {value}")).collect();
+        let at = wanted.vary.iter().zip(x.iter().zip(&units));
+        let at: Vec<String> = at.map(|(name, (x, si))| format!("{name} {}", x / si)).collect();
         return Err(format!("trim: no state found that is held; left are {} at {}", told.join(", "), at.join(", ")));
     }
-    let values = wanted.vary.iter().cloned().zip(x.iter().zip(&unknowns).map(|(x, u)| in_unit_of_name(*x, *u)));
+    let values = wanted.vary.iter().cloned().zip(x.iter().zip(&units).map(|(x, si)| x / si));
     Ok(Trimmed { initial: found, values: values.collect(), residuals })
 }
 
-fn in_unit_of_name(x: f64, unknown: Unknown) -> f64 {
-    match unknown {
-        Unknown::Control(_) | Unknown::Speed => x,
-        Unknown::Roll | Unknown::Pitch | Unknown::Yaw | Unknown::Alpha => x.to_degrees(),
+/// What a name means, and what one of its unit is in SI.
+fn unknown(model: &Model, name: &str) -> Result<(Unknown, f64), String> {
+    if let Some(place) = model.control(name) {
+        // A control is varied in its own unit.
+        return Ok((Unknown::Control(place), 1.0));
     }
-}
-
-fn unknown(model: &Model, name: &str) -> Result<Unknown, String> {
-    match name {
-        "roll_deg" => Ok(Unknown::Roll),
-        "pitch_deg" => Ok(Unknown::Pitch),
-        "yaw_deg" => Ok(Unknown::Yaw),
-        "alpha_deg" => Ok(Unknown::Alpha),
-        "speed_mps" => Ok(Unknown::Speed),
-        name => model.control(name).map(Unknown::Control).ok_or_else(|| {
-            let controls: Vec<&str> = model.controls.iter().map(|control| control.name.as_str()).collect();
-            format!(
-                "trim.vary: expected roll_deg, pitch_deg, yaw_deg, alpha_deg, speed_mps or a control [{}], found {name}",
-                controls.join(", ")
-            )
-        }),
-    }
+    let known = match without_unit(name) {
+        Some(("roll" | "phi", si)) => Some((Unknown::Roll, si)),
+        Some(("pitch" | "theta", si)) => Some((Unknown::Pitch, si)),
+        Some(("yaw" | "psi", si)) => Some((Unknown::Yaw, si)),
+        Some(("alpha", si)) => Some((Unknown::Alpha, si)),
+        Some(("speed", si)) => Some((Unknown::Speed, si)),
+        _ => None,
+    };
+    known.ok_or_else(|| {
+        let controls: Vec<&str> = model.controls.iter().map(|control| control.name.as_str()).collect();
+        format!(
+            "trim.vary: expected roll_deg, pitch_deg, yaw_deg, alpha_deg, speed_mps or a control [{}], found {name}",
+            controls.join(", ")
+        )
+    })
 }
 
 fn checked(model: &Arc<Model>, place: usize, value: f64) -> Result<f64, String> {

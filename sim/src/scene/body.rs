@@ -4,8 +4,7 @@
 //! order, cut into pieces where the body's fastest mode asks for it. The controls of a body are held over a step. The
 //! ground ends a flight: the path of the step is swept, and the body stays where it met it.
 //!
-//! Invariants others rely on: a state is finite, its quaternion of length 1; numbers below [`REST`] are 0, since what
-//! only decays would end in denormal numbers, which are slow; a step allocates nothing.
+//! Invariants others rely on: a state is finite and its quaternion of length 1; a step allocates nothing.
 
 use super::codec::coded;
 use super::event::EndReason;
@@ -26,8 +25,6 @@ use crate::turbulence::Dryden;
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
-/// Numbers of a state below this are rest: in m/s and rad/s 30 digits below what counts, 270 above a denormal.
-pub const REST: f64 = crate::ballistics::motion::REST_MPS;
 /// Steps between two looks at how stiff the flow makes a body.
 const STEPS_A_LOOK: u32 = 16;
 /// Altitudes between which bodies and shells fly, metres: below every ocean floor, above all air.
@@ -250,11 +247,6 @@ impl Body {
         let piece_s = dt_s / f64::from(self.pieces);
         for _ in 0..self.pieces {
             y = motion::normalised(integrate::step(Integrator::Rk4, &rig.motion, 0.0, &y, piece_s, &mut None));
-        }
-        for number in &mut y {
-            if number.abs() < REST {
-                *number = 0.0;
-            }
         }
         if !y.iter().all(|number| number.is_finite()) {
             return self.end(EndReason::NotFinite, None);

@@ -37,7 +37,7 @@ mod target;
 mod target_grid;
 mod view;
 
-pub use body::{ALTITUDES_M, BodyStart, REST};
+pub use body::{ALTITUDES_M, BodyStart};
 pub use catalogue::Catalogue;
 pub use codec::SaveError;
 pub use command::{Command, Freeze, Stamped};

@@ -156,7 +156,7 @@ fn bent_steps_at_posts_edges_and_diagonals_do_not_pass_either() {
 /// A shell with quadratic drag, `k` per metre: state and one step's path.
 fn fly(place: DVec3, velocity: DVec3, k: f64, step_s: f64) -> StepPath {
     let y = [place.x, place.y, place.z, velocity.x, velocity.y, velocity.z];
-    let y = rk4(&y, step_s, |y| {
+    let y = rk4(0.0, &y, step_s, |_, y| {
         let v = DVec3::new(y[3], y[4], y[5]);
         let a = DVec3::new(0.0, -9.81, 0.0) - v * (k * v.length());
         [v.x, v.y, v.z, a.x, a.y, a.z]

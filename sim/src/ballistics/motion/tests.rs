@@ -189,3 +189,40 @@ fn a_piece_of_a_step_is_rk4_and_nothing_else() {
     let plain = rk4(0.0, &y, 0.01, |t, y| motion.rate(t, y));
     assert_eq!(advance(Integrator::Rk4, &motion, 0.0, &y, 0.01, &mut None), Ok((plain, 1)));
 }
+
+/// Not a promise of a test but a figure: `cargo test --release -p poligon-sim shell_step -- --ignored --nocapture`.
+#[test]
+#[ignore = "a measurement, of use in release only"]
+fn what_a_shell_step_costs() {
+    let shell = projectile("mass_kg = 43.09\ndiameter_m = 0.155\ndrag = 'G7'\nform_factor = 1.0");
+    let (standard, constant, wind) = (Atmosphere::standard(), Atmosphere::constant(1.0), Wind::still());
+    let windy = Wind::new(vec![(0.0, DVec3::X), (1e4, DVec3::Y)]).unwrap();
+    let round =
+        Planet { gravity: crate::planet::Gravity::InverseSquare(crate::planet::EARTH_GM_M3PS2), ..Planet::wgs84() };
+    let round = Planet { shape: Shape::Round { radius_m: crate::planet::EARTH_MEAN_RADIUS_M }, ..round };
+    for (name, planet, air, wind) in [
+        ("flat, us1976", Planet::flat(), &standard, &wind),
+        ("flat, constant air", Planet::flat(), &constant, &wind),
+        ("flat, us1976, wind", Planet::flat(), &standard, &windy),
+        ("flat, vacuum", Planet::flat(), &Atmosphere::None, &wind),
+        ("round, us1976", round, &standard, &wind),
+        ("ellipsoid, us1976", Planet::wgs84(), &standard, &wind),
+        ("ellipsoid, us1976, wind", Planet::wgs84(), &standard, &windy),
+    ] {
+        let muzzle = planet.position_m(Place::default());
+        let up = planet.frame_from_ned(Place::default()) * DVec3::new(400.0, 10.0, -400.0);
+        let motion = ShellMotion::new(&shell, planet, air, wind, DVec3::X);
+        let best_ns = (0..9)
+            .map(|_| {
+                let (mut y, mut before) = (state(muzzle, up), None);
+                let started = std::time::Instant::now();
+                for i in 0..100_000 {
+                    y = advance(Integrator::Rk4, &motion, f64::from(i) * 5e-4, &y, 5e-4, &mut before).unwrap().0;
+                }
+                assert!(y[3].is_finite());
+                started.elapsed().as_secs_f64() * 1e9 / 1e5
+            })
+            .fold(f64::INFINITY, f64::min);
+        println!("{name}: {best_ns:.0} ns a step");
+    }
+}
