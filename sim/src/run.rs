@@ -5,12 +5,12 @@
 //! renderer that stalls costs the simulation nothing. A simulation that stalls is slowed ([`crate::clock`]).
 
 use crate::aircraft::AircraftState;
+use crate::clock::MAX_FRAME_S;
 use crate::input::{Command, Controls};
 use crate::scene::{self, Scene, SceneGround};
 use crate::snapshot::Snapshot;
 use crate::track::Track;
 use crate::utc::UtcTime;
-use crate::clock::MAX_FRAME_S;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;

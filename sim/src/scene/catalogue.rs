@@ -107,7 +107,10 @@ impl Catalogue {
 
 fn add<T>(list: &mut Vec<Named<T>>, what: &str, name: &str, thing: T, fingerprint: u64) -> Result<(), Refused> {
     if name.is_empty() || name.len() > LONGEST_TEXT {
-        return Err(Refused::new(format_args!("{what}: expected a name of 1 to {LONGEST_TEXT} bytes, found {}", name.len())));
+        return Err(Refused::new(format_args!(
+            "{what}: expected a name of 1 to {LONGEST_TEXT} bytes, found {}",
+            name.len()
+        )));
     }
     if list.iter().any(|named| named.name == name) {
         return Err(Refused::new(format_args!("{what}: expected a name that is not taken, found {name}")));

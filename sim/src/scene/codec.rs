@@ -161,7 +161,11 @@ impl Coded for f64 {
     }
     fn take(from: &mut Reader<'_>) -> Result<Self, SaveError> {
         let found = Self::from_bits(from.take()?);
-        if found.is_finite() { Ok(found) } else { Err(from.refuse(format_args!("expected a finite number, found {found}"))) }
+        if found.is_finite() {
+            Ok(found)
+        } else {
+            Err(from.refuse(format_args!("expected a finite number, found {found}")))
+        }
     }
 }
 
@@ -189,7 +193,9 @@ impl Coded for String {
             return Err(from.refuse(format_args!("expected a text of at most {LONGEST_TEXT} bytes, found {count}")));
         }
         let bytes = from.bytes(count)?;
-        std::str::from_utf8(bytes).map(str::to_owned).map_err(|error| from.refuse(format_args!("expected a text: {error}")))
+        std::str::from_utf8(bytes)
+            .map(str::to_owned)
+            .map_err(|error| from.refuse(format_args!("expected a text: {error}")))
     }
 }
 

@@ -234,12 +234,7 @@ impl Coded for Command {
             9 => Self::Turbulence(from.take()?),
             10 => Self::Control { id: from.take()?, control: from.take()?, value: from.take()? },
             11 => Self::Fuel { id: from.take()?, change: from.take()? },
-            12 => Self::Fail {
-                id: from.take()?,
-                name: from.take()?,
-                failure: from.take()?,
-                in_steps: from.take()?,
-            },
+            12 => Self::Fail { id: from.take()?, name: from.take()?, failure: from.take()?, in_steps: from.take()? },
             13 => Self::Clear { id: from.take()?, name: from.take()? },
             14 => {
                 let (owner, projectile, muzzle) = (from.take()?, from.take()?, from.take()?);

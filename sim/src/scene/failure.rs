@@ -116,7 +116,9 @@ impl Armed {
     pub fn new(name: &str, failure: &Failure, at_step: u64, model: &Model) -> Result<Self, Refused> {
         if name.is_empty() || name.len() > LONGEST_TEXT {
             let found = name.len();
-            return Err(Refused::new(format_args!("failure: expected a name of 1 to {LONGEST_TEXT} bytes, found {found}")));
+            return Err(Refused::new(format_args!(
+                "failure: expected a name of 1 to {LONGEST_TEXT} bytes, found {found}"
+            )));
         }
         let fault = match failure {
             Failure::ControlStuck(control) => Fault::Stuck(control_of(model, control)?, 0.0),

@@ -114,7 +114,12 @@ impl SceneGround {
             if under(middle) { high = middle } else { low = middle }
         }
         let point_m = path.position_m(high);
-        Some(GroundTouch { fraction: high, point_m, normal: self.slope(point_m), velocity_mps: path.velocity_mps(high) })
+        Some(GroundTouch {
+            fraction: high,
+            point_m,
+            normal: self.slope(point_m),
+            velocity_mps: path.velocity_mps(high),
+        })
     }
 
     /// The normal by differences over a metre; up where there are no neighbours.
@@ -140,8 +145,7 @@ mod tests {
         let field = synthetic::from_fn(grid, |column, row| 10.0 * column as f32 - 4.0 * row as f32 + 300.0);
         let area = Ground::new(Arc::new(field)).whole();
         let of = area.clone();
-        let (exact, looked) =
-            (SceneGround::from(area), SceneGround::heights(move |x_m, z_m| of.height_m(x_m, z_m)));
+        let (exact, looked) = (SceneGround::from(area), SceneGround::heights(move |x_m, z_m| of.height_m(x_m, z_m)));
         let path = StepPath::straight(DVec3::new(-900.0, 900.0, 700.0), DVec3::new(500.0, 100.0, -650.0), 1.0);
         let (a, b) = (exact.touch(&path).unwrap(), looked.touch(&path).unwrap());
         // Coordinates below 2^10 m: roundings of 2^-43 m, some ten of them, over the sine of the grazing angle (> 0.1).

@@ -131,11 +131,12 @@ impl Burst {
         Ok(Self { owner, projectile, muzzle, first_s: now_s, interval_s, fired: 0, rounds })
     }
 
-    /// What a restored one must be.
-    pub fn check(&self) -> Result<(), Refused> {
+    /// What a restored one must be at a time: rounds that were due long ago would all leave at once.
+    pub fn check(&self, now_s: f64, step_s: f64) -> Result<(), Refused> {
         self.muzzle.check()?;
         let fast = self.interval_s < 60.0 / MOST_PER_MINUTE * (1.0 - 1e-9) && self.rounds > 1;
-        if fast || self.fired > self.rounds {
+        let late = self.due_s() < now_s - step_s;
+        if fast || late || self.fired > self.rounds {
             return Err(Refused::new("burst: expected a rate of fire and rounds that can be"));
         }
         Ok(())
@@ -150,9 +151,14 @@ impl Burst {
         self.fired >= self.rounds
     }
 
+    /// When the next round leaves.
+    fn due_s(&self) -> f64 {
+        self.first_s + f64::from(self.fired) * self.interval_s
+    }
+
     /// Takes the next round that leaves before `end_s`; says when.
     pub fn next_before(&mut self, end_s: f64) -> Option<f64> {
-        let due_s = self.first_s + f64::from(self.fired) * self.interval_s;
+        let due_s = self.due_s();
         if self.is_over() || due_s >= end_s {
             return None;
         }
@@ -172,7 +178,9 @@ impl Burst {
         let arm = at.attitude * self.muzzle.offset_m;
         Shot {
             position_m: at.position_m + arm,
-            velocity_mps: at.velocity_mps + at.attitude * at.rates_radps.cross(self.muzzle.offset_m) + direction * speed_mps,
+            velocity_mps: at.velocity_mps
+                + at.attitude * at.rates_radps.cross(self.muzzle.offset_m)
+                + direction * speed_mps,
             bore: direction,
         }
     }
@@ -185,7 +193,12 @@ mod tests {
     const SEED: u64 = 20_261_131;
 
     fn still() -> Carriage {
-        Carriage { position_m: DVec3::ZERO, attitude: DQuat::IDENTITY, velocity_mps: DVec3::ZERO, rates_radps: DVec3::ZERO }
+        Carriage {
+            position_m: DVec3::ZERO,
+            attitude: DQuat::IDENTITY,
+            velocity_mps: DVec3::ZERO,
+            rates_radps: DVec3::ZERO,
+        }
     }
 
     fn burst(muzzle: Muzzle, rounds: u32, per_minute: f64) -> Burst {

@@ -123,6 +123,8 @@ pub struct Scene {
     swept: Vec<Target>,
     /// Whether `grid` does not know all of `swept`.
     swept_anew: bool,
+    /// Whether targets wait for their height over the ground.
+    unsettled: bool,
     grid: TargetGrid,
     bursts: Vec<Burst>,
     /// Rounds that each owner has fired.
@@ -141,11 +143,25 @@ impl Scene {
 
     /// The same with another number of steps a second.
     pub fn with_step_hz(start: AircraftState, date: UtcTime, step_hz: u32) -> Self {
-        Self::furnished(start, date, step_hz, Surroundings::default(), Arc::default())
+        Self::within(start, date, step_hz, Surroundings::default(), Arc::default())
     }
 
     /// A scene in its surroundings, with what its entities may be made of.
+    ///
+    /// # Errors
+    /// [`Refused`] if a number of the wind or the turbulence is none.
     pub fn furnished(
+        start: AircraftState,
+        date: UtcTime,
+        step_hz: u32,
+        surroundings: Surroundings,
+        catalogue: Arc<Catalogue>,
+    ) -> Result<Self, Refused> {
+        surroundings.check()?;
+        Ok(Self::within(start, date, step_hz, surroundings, catalogue))
+    }
+
+    fn within(
         start: AircraftState,
         date: UtcTime,
         step_hz: u32,
@@ -182,6 +198,7 @@ impl Scene {
             rigs,
             swept: Vec::new(),
             swept_anew: false,
+            unsettled: false,
             grid: TargetGrid::default(),
             bursts: Vec::new(),
             fired: BTreeMap::new(),
@@ -232,7 +249,7 @@ impl Scene {
             self.targets.push((id, entity));
         }
         self.views.targets.take();
-        self.swept_anew = true;
+        (self.swept_anew, self.unsettled) = (true, true);
     }
 
     /// The own aircraft's id.

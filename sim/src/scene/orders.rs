@@ -147,7 +147,9 @@ impl Scene {
                 let kind = self.catalogue.projectile(projectile)?;
                 if self.carriage(*owner).is_none() {
                     let found = owner.0;
-                    return Err(Refused::new(format_args!("fire.owner: expected an entity that can fire, found {found}")));
+                    return Err(Refused::new(format_args!(
+                        "fire.owner: expected an entity that can fire, found {found}"
+                    )));
                 }
                 if self.bursts.len() >= MOST_BURSTS {
                     return Err(Refused::new(format_args!("fire: expected at most {MOST_BURSTS} bursts at a time")));

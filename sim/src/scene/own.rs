@@ -76,7 +76,9 @@ impl Scene {
         let later = |clock: &mut Clock, seconds: f64| clock.set_date(clock.date().plus_s(seconds));
         match command {
             input::Command::Pause => self.clock.set_paused(!self.clock.paused()),
-            input::Command::Freeze => self.freeze = if self.freeze == Freeze::None { Freeze::Flight } else { Freeze::None },
+            input::Command::Freeze => {
+                self.freeze = if self.freeze == Freeze::None { Freeze::Flight } else { Freeze::None }
+            }
             input::Command::Reset => self.reset(),
             input::Command::Slew => {
                 self.mode = if self.mode == Mode::Slew { Mode::Pilot } else { Mode::Slew };
@@ -139,7 +141,10 @@ impl Scene {
     }
 
     /// Takes the height above ground anew without a step, as before the first one or after placing.
+    ///
+    /// Targets that were just added take theirs.
     pub fn look_down(&mut self, ground: &SceneGround) {
+        self.settle(ground);
         let at = self.aircraft().position_m;
         self.height_above_ground_m = ground.height_m(at.x, at.z).filter(|h| h.is_finite()).map(|h| at.y - h);
     }

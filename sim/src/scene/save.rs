@@ -14,7 +14,9 @@ use super::codec::{Coded, FNV_BASIS, Reader, fnv};
 use super::event::MOST_KEPT;
 use super::shell::Shell;
 use super::target::TargetState;
-use super::{Catalogue, Command, Freeze, Refused, Roster, SaveError, Scene, Stamped, Surroundings, attitude, place, speed};
+use super::{
+    Catalogue, Command, Freeze, Refused, Roster, SaveError, Scene, Stamped, Surroundings, attitude, place, speed,
+};
 use crate::aircraft::AircraftState;
 use crate::clock::Clock;
 use crate::input::Controls;
@@ -24,6 +26,10 @@ use std::sync::Arc;
 
 const WORD: &[u8; 8] = b"PLGSCENE";
 const VERSION: u32 = 1;
+/// Most ids, rounds and events: no run of a scene counts so far, and a sum of two still fits.
+const MOST_COUNTED: u64 = 1 << 60;
+/// Fastest projectile that is taken back, m/s: above twice what a muzzle and its owner may give.
+const FASTEST_MPS: f64 = 100_000.0;
 
 super::codec::coded_choice!(Mode { Pilot, Track, Slew });
 
@@ -44,7 +50,7 @@ impl Scene {
         (self.mode, self.freeze).put(&mut out);
         (self.height_above_ground_m, self.jumps).put(&mut out);
         self.surroundings.put(&mut out);
-        self.next_id.put(&mut out);
+        (self.next_id, self.unsettled).put(&mut out);
         self.put_all::<Body>(&self.bodies, &mut out);
         self.put_all::<Shell>(&self.shells, &mut out);
         self.put_all::<TargetState>(&self.targets, &mut out);
@@ -93,7 +99,7 @@ impl Scene {
         let (mode, freeze): (Mode, Freeze) = from.take()?;
         let (height_above_ground_m, jumps) = from.take()?;
         let surroundings: Surroundings = from.take()?;
-        let mut scene = Self::furnished(start, clock.date(), clock.step_hz, surroundings, catalogue);
+        let mut scene = Self::within(start, clock.date(), clock.step_hz, surroundings, catalogue);
         for state in [&start, &own] {
             in_bounds(&from, state)?;
         }
@@ -103,11 +109,18 @@ impl Scene {
         (scene.clock, scene.controls, scene.track, scene.track_m) = (clock, controls.checked(), track, track_m);
         (scene.mode, scene.freeze) = (mode, freeze);
         (scene.height_above_ground_m, scene.jumps) = (height_above_ground_m, jumps);
-        scene.next_id = from.take()?;
+        let (next_id, unsettled) = from.take::<(u64, bool)>()?;
+        if !(2..=MOST_COUNTED).contains(&next_id) {
+            return Err(from.refuse(format_args!("expected a next id in 2..={MOST_COUNTED}, found {next_id}")));
+        }
+        scene.next_id = next_id;
         scene.take_entities(&mut from)?;
+        scene.unsettled = unsettled;
         scene.take_rest(&mut from)?;
         if from.left() != 8 {
-            return Err(from.refuse(format_args!("expected the end, found {} bytes more", from.left().saturating_sub(8))));
+            return Err(
+                from.refuse(format_args!("expected the end, found {} bytes more", from.left().saturating_sub(8)))
+            );
         }
         Ok(scene)
     }
@@ -128,7 +141,9 @@ impl Scene {
         let mut used = Vec::new();
         for (id, body) in take_all::<Body>(from, self.next_id, &mut used)? {
             let models = &self.catalogue.models;
-            let model = models.get(body.model as usize).ok_or_else(|| from.refuse("body: expected a model of the catalogue"))?;
+            let model = models
+                .get(body.model as usize)
+                .ok_or_else(|| from.refuse("body: expected a model of the catalogue"))?;
             body.check(&model.thing).map_err(|why| from.refuse(why))?;
             let entity = self.ecs.spawn((id, body));
             self.bodies.push((id, entity));
@@ -138,6 +153,10 @@ impl Scene {
                 return Err(from.refuse("shell: expected a projectile of the catalogue and an age of 0 or more"));
             }
             place("shell.position_m", shell.position_m()).map_err(|why| from.refuse(why))?;
+            let found = shell.velocity_mps().length();
+            if found > FASTEST_MPS {
+                return Err(from.refuse(format_args!("shell: expected at most {FASTEST_MPS} m/s, found {found}")));
+            }
             let entity = self.ecs.spawn((id, shell));
             self.shells.push((id, entity));
         }
@@ -160,15 +179,20 @@ impl Scene {
         let refuse = |from: &Reader<'_>, why: Refused| from.refuse(why);
         self.bursts = from.take()?;
         for burst in &self.bursts {
-            burst.check().map_err(|why| refuse(from, why))?;
+            burst.check(self.clock.time_s(), self.clock.step_s()).map_err(|why| refuse(from, why))?;
             if burst.projectile as usize >= self.catalogue.projectiles.len() {
                 return Err(from.refuse("burst: expected a projectile of the catalogue"));
             }
         }
         self.fired = from.take::<Vec<(StableId, u64)>>()?.into_iter().collect();
         self.log = from.take()?;
+        if self.fired.values().any(|rounds| *rounds > MOST_COUNTED) || self.log.counted > MOST_COUNTED {
+            return Err(from.refuse(format_args!("expected at most {MOST_COUNTED} rounds and events")));
+        }
         if self.log.recent.len() > MOST_KEPT {
-            return Err(from.refuse(format_args!("expected at most {MOST_KEPT} events, found {}", self.log.recent.len())));
+            return Err(
+                from.refuse(format_args!("expected at most {MOST_KEPT} events, found {}", self.log.recent.len()))
+            );
         }
         self.pending = from.take::<Vec<Stamped>>()?.into();
         let rises = self.pending.iter().zip(self.pending.iter().skip(1)).all(|(a, b)| a.step <= b.step);
@@ -176,7 +200,8 @@ impl Scene {
         if !rises || late {
             return Err(from.refuse("expected commands whose steps rise and are still to come"));
         }
-        let pilot = |stamped: &Stamped| matches!(stamped.command, Command::Pilot(_)) && !stamped.command.concerns_scene();
+        let pilot =
+            |stamped: &Stamped| matches!(stamped.command, Command::Pilot(_)) && !stamped.command.concerns_scene();
         if self.pending.iter().any(pilot) {
             return Err(from.refuse("expected commands that concern the scene"));
         }
@@ -221,7 +246,9 @@ fn take_catalogue(from: &mut Reader<'_>, catalogue: &Catalogue) -> Result<(), Sa
         match ours.next() {
             Some(found) if found == (kind, name.as_str(), print) => {}
             Some((_, found, _)) if found == name => {
-                return Err(from.refuse(format_args!("catalogue: expected the {what} {name} that was saved, found a changed one")));
+                return Err(from.refuse(format_args!(
+                    "catalogue: expected the {what} {name} that was saved, found a changed one"
+                )));
             }
             found => {
                 let found = found.map_or("none", |(_, name, _)| name);

@@ -111,7 +111,8 @@ impl<'a> Range<'a> {
     fn advanced(&self, shell: &Shell, step_s: f64) -> Result<State, StepError> {
         let (shared, projectile) = &self.motions[shell.kind as usize];
         if projectile.burn.is_empty() {
-            return advance(Integrator::Rk4, shared, shell.age_s, &shell.state, step_s, &mut None).map(|(next, _)| next);
+            return advance(Integrator::Rk4, shared, shell.age_s, &shell.state, step_s, &mut None)
+                .map(|(next, _)| next);
         }
         let (air, wind) = (&self.surroundings.atmosphere, &self.surroundings.wind);
         let mut motion = ShellMotion::new(projectile, self.surroundings.planet(), air, wind, shell.bore);

@@ -23,6 +23,7 @@ type Hit = (StableId, StableId, u64);
 impl Scene {
     /// Takes one step. Pausing is the caller's: a clock that is paused gives no steps to take.
     pub fn step(&mut self, ground: &SceneGround) {
+        self.settle(ground);
         self.obey();
         let (dt_s, from_s, date) = (self.clock.step_s(), self.clock.time_s(), self.clock.date());
         self.clock.tick();
@@ -44,13 +45,22 @@ impl Scene {
         self.look_down(ground);
     }
 
-    /// Takes the ground anew under what stands on it: for another ground than before.
+    /// Says that the ground is another than before: what stands on it takes its height anew before the next step.
     pub fn ground_changed(&mut self) {
+        self.unsettled = true;
+    }
+
+    /// Puts targets on the ground that were not yet.
+    pub(super) fn settle(&mut self, ground: &SceneGround) {
+        if !std::mem::take(&mut self.unsettled) {
+            return;
+        }
         for (_, entity) in &self.targets {
             if let Ok(mut target) = self.ecs.get::<&mut TargetState>(*entity) {
-                target.settled = false;
+                target.settle(ground);
             }
         }
+        self.views.targets.take();
     }
 
     /// The pose of whoever may fire: the own aircraft, a body that flies, a target.
@@ -115,9 +125,9 @@ impl Scene {
             (swept.from, swept.to) = (now, now);
             if target.is_restless() {
                 // A turn at a waypoint is at once: the new attitude holds for the whole step.
-                let from_m = target.step(ground, dt_s);
+                target.step(ground, dt_s);
                 swept.to = target.pose();
-                swept.from = Pose { position_m: from_m, ..swept.to };
+                swept.from = Pose { position_m: now.position_m, ..swept.to };
                 moved = true;
             }
         }
@@ -170,7 +180,8 @@ impl Scene {
                 let fraction = ((due_s - from_s) / dt_s).clamp(0.0, 1.0);
                 let round = self.fired.entry(burst.owner).or_insert(0);
                 let shot = burst.shot(seed, *round, before, after, fraction);
-                let (id, mut shell) = (StableId(self.next_id), Shell::new(burst.projectile, burst.owner, *round, &shot));
+                let (id, mut shell) =
+                    (StableId(self.next_id), Shell::new(burst.projectile, burst.owner, *round, &shot));
                 *round += 1;
                 self.next_id += 1;
                 if fly(id, &mut shell, fraction) {

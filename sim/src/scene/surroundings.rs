@@ -57,7 +57,8 @@ impl Surroundings {
             return Err(Refused::new(format_args!("lat_rad: expected a latitude within +-pi/2, found {lat_rad}")));
         }
         let sin2 = lat_rad.sin().powi(2);
-        let plumb_mps2 = 9.780_325_335_9 * (1.0 + 0.001_931_852_652_41 * sin2) / (1.0 - 0.006_694_379_990_14 * sin2).sqrt();
+        let plumb_mps2 =
+            9.780_325_335_9 * (1.0 + 0.001_931_852_652_41 * sin2) / (1.0 - 0.006_694_379_990_14 * sin2).sqrt();
         let planet = Planet {
             shape: Shape::Flat { origin: Place { lat_rad, ..Place::default() }, radius_m: EARTH_MEAN_RADIUS_M },
             gravity: Gravity::PlumbInverseSquare(plumb_mps2),
@@ -76,6 +77,11 @@ impl Surroundings {
     /// The Earth.
     pub fn planet(&self) -> Planet {
         self.planet
+    }
+
+    pub(super) fn check(&self) -> Result<(), Refused> {
+        Self::checked_wind(&self.wind.rows)?;
+        Self::checked_turbulence(self.turbulence_mps).map(|_| ())
     }
 
     pub(super) fn checked_wind(rows: &[(f64, DVec3)]) -> Result<Wind, Refused> {

@@ -82,25 +82,12 @@ pub(super) struct TargetState {
     pub velocity_mps: DVec3,
     height: Height,
     route: Option<Route>,
-    /// Whether the height over the ground was taken.
-    pub settled: bool,
     pub hits: u32,
     /// Owner and number of the round that hit last.
     pub last_round: Option<(StableId, u64)>,
     pub jumps: u32,
 }
-coded!(TargetState {
-    shape,
-    position_m,
-    attitude,
-    velocity_mps,
-    height,
-    route,
-    settled,
-    hits,
-    last_round,
-    jumps
-});
+coded!(TargetState { shape, position_m, attitude, velocity_mps, height, route, hits, last_round, jumps });
 
 impl Coded for Height {
     fn put(&self, out: &mut Vec<u8>) {
@@ -136,7 +123,6 @@ impl TargetState {
             velocity_mps: DVec3::ZERO,
             height: start.height,
             route,
-            settled: false,
             hits: 0,
             last_round: None,
             jumps: 0,
@@ -155,12 +141,12 @@ impl TargetState {
 
     /// Whether a step may move it.
     pub fn is_restless(&self) -> bool {
-        !self.settled || self.route.as_ref().is_some_and(|route| !route.is_over()) || self.velocity_mps != DVec3::ZERO
+        self.route.as_ref().is_some_and(|route| !route.is_over()) || self.velocity_mps != DVec3::ZERO
     }
 
-    /// Goes on by a step; gives the place that it moves from.
-    pub fn step(&mut self, ground: &SceneGround, dt_s: f64) -> DVec3 {
-        let mut from_m = self.position_m;
+    /// Goes on by a step.
+    pub fn step(&mut self, ground: &SceneGround, dt_s: f64) {
+        let from_m = self.position_m;
         if let Some(route) = self.route.as_mut().filter(|route| !route.is_over()) {
             let leg = route.leg;
             let plan = route.advance(dt_s);
@@ -169,18 +155,18 @@ impl TargetState {
                 self.attitude = route.facing();
             }
         }
+        self.settle(ground);
+        self.velocity_mps = (self.position_m - from_m) / dt_s;
+    }
+
+    /// Takes its height over the ground.
+    pub fn settle(&mut self, ground: &SceneGround) {
         self.position_m.y = match self.height {
             Height::Msl(metres) => metres,
             Height::OverGround(metres) => ground
                 .height_m(self.position_m.x, self.position_m.z)
                 .map_or(self.position_m.y, |ground_m| ground_m + metres),
         };
-        if !self.settled {
-            // The first height is where it stands, not a climb.
-            (from_m.y, self.settled) = (self.position_m.y, true);
-        }
-        self.velocity_mps = (self.position_m - from_m) / dt_s;
-        from_m
     }
 
     /// Puts it elsewhere, standing: a route ends there.
@@ -207,7 +193,9 @@ impl Route {
     fn check(&self) -> Result<(), Refused> {
         let count = self.waypoints_m.len();
         if !(2..=MOST_WAYPOINTS).contains(&count) {
-            return Err(Refused::new(format_args!("target.route_m: expected 1..{MOST_WAYPOINTS} waypoints, found {count}")));
+            return Err(Refused::new(format_args!(
+                "target.route_m: expected 1..{MOST_WAYPOINTS} waypoints, found {count}"
+            )));
         }
         for at in &self.waypoints_m {
             place("target.route_m", DVec3::new(at.x, 0.0, at.y))?;
@@ -219,9 +207,13 @@ impl Route {
         }
         if !(self.speed_mps >= 0.0 && self.speed_mps <= MAX_SPEED_MPS) {
             let found = self.speed_mps;
-            return Err(Refused::new(format_args!("target.speed_mps: expected 0..={MAX_SPEED_MPS} m/s, found {found}")));
+            return Err(Refused::new(format_args!(
+                "target.speed_mps: expected 0..={MAX_SPEED_MPS} m/s, found {found}"
+            )));
         }
-        if self.leg as usize >= count || self.along_m < 0.0 || (self.is_over() && self.loops) {
+        let leg = self.leg as usize;
+        let most_m = if leg + 1 < count { self.waypoints_m[leg].distance(self.waypoints_m[leg + 1]) } else { 0.0 };
+        if leg >= count || !(0.0..=most_m).contains(&self.along_m) || (self.is_over() && self.loops) {
             return Err(Refused::new(format_args!("target.route_m: expected a leg below {count}, found {}", self.leg)));
         }
         Ok(())

@@ -73,9 +73,7 @@ impl EntityView {
     /// Its numbers, for a hash.
     pub(crate) fn words(&self) -> [u64; 13] {
         let (p, q, v) = (self.position_m, self.attitude, self.velocity_mps);
-        let rest = u64::from(self.of)
-            | (self.kind as u64) << 32
-            | (self.condition as u64) << 40;
+        let rest = u64::from(self.of) | (self.kind as u64) << 32 | (self.condition as u64) << 40;
         let counts = u64::from(self.hits) | u64::from(self.jumps) << 32;
         let f = f64::to_bits;
         [self.id.0, rest, counts, f(p.x), f(p.y), f(p.z), f(q.x), f(q.y), f(q.z), f(q.w), f(v.x), f(v.y), f(v.z)]
@@ -187,7 +185,9 @@ impl Scene {
             kind: EntityKind::Projectile,
             of: shell.kind,
             position_m: shell.position_m(),
-            attitude: velocity_mps.try_normalize().map_or(DQuat::IDENTITY, |way| DQuat::from_rotation_arc(DVec3::X, way)),
+            attitude: velocity_mps
+                .try_normalize()
+                .map_or(DQuat::IDENTITY, |way| DQuat::from_rotation_arc(DVec3::X, way)),
             velocity_mps,
             condition: Condition::Flying,
             hits: 0,

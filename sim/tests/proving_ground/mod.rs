@@ -106,13 +106,15 @@ pub fn plain() -> SceneGround {
 }
 
 pub fn surroundings() -> Surroundings {
-    Surroundings { turbulence_mps: 1.5, seed: SEED, ..Surroundings::over(0.74).unwrap() }
+    let mut around = Surroundings::over(0.74).unwrap();
+    (around.turbulence_mps, around.seed) = (1.5, SEED);
+    around
 }
 
 /// A scene with the own aircraft alone, 120 steps a second.
 pub fn empty(around: Surroundings) -> Scene {
     let start = AircraftState::level(DVec3::new(0.0, 6_000.0, 0.0), 0.3, 180.0);
-    Scene::furnished(start, UtcTime::parse("2026-06-21T06:00:00Z").unwrap(), 120, around, catalogue())
+    Scene::furnished(start, UtcTime::parse("2026-06-21T06:00:00Z").unwrap(), 120, around, catalogue()).unwrap()
 }
 
 /// Level flight north at 60 m/s.
@@ -150,7 +152,8 @@ pub fn busy() -> Scene {
     }
     for i in 0..6 {
         let at = DVec2::new(-1_500.0 + 500.0 * f64::from(i), -900.0);
-        let route_m = if i % 2 == 0 { vec![at + DVec2::new(40.0, 0.0), at + DVec2::new(40.0, 60.0)] } else { Vec::new() };
+        let route_m =
+            if i % 2 == 0 { vec![at + DVec2::new(40.0, 0.0), at + DVec2::new(40.0, 60.0)] } else { Vec::new() };
         let start = TargetStart { route_m, speed_mps: 12.0, loops: i == 4, ..TargetStart::standing("tank", at) };
         scene.add_target(&start).unwrap();
     }
@@ -163,26 +166,35 @@ pub fn busy() -> Scene {
         (3, Command::Controls(Controls { pitch: 0.2, roll: 0.3, yaw: 0.0, throttle: 0.7 })),
         (10, Command::Control { id: first, control: "aileron_norm".to_owned(), value: 0.1 }),
         (20, fire(first, "rocket", Muzzle::ahead(30.0), 4, 300.0)),
-        (40, Command::Fail { id: first, name, failure: Failure::ControlStuck("aileron_norm".to_owned()), in_steps: 25 }),
+        (
+            40,
+            Command::Fail { id: first, name, failure: Failure::ControlStuck("aileron_norm".to_owned()), in_steps: 25 },
+        ),
         (45, Command::Wind(vec![(0.0, DVec3::new(3.0, -8.0, 0.0)), (9_000.0, DVec3::new(20.0, 5.0, 0.0))])),
         (60, Command::Fail { id: second, name: "hole".to_owned(), failure: Failure::FuelLeak(30.0), in_steps: 0 }),
         (70, Command::Control { id: first, control: "aileron_norm".to_owned(), value: -0.2 }),
         (90, Command::Turbulence(4.0)),
         (100, Command::Fuel { id: StableId(4), change: FuelChange::Consume(20.0) }),
         (140, Command::Clear { id: first, name: "jam".to_owned() }),
-        (150, Command::Reposition {
-            id: StableId(4),
-            position_m: DVec3::new(800.0, 6_000.0, 0.0),
-            velocity_mps: DVec3::X * 70.0,
-            attitude: sim::frame::attitude(sim::frame::Angles { heading_rad: 1.5, ..Default::default() }),
-        }),
+        (
+            150,
+            Command::Reposition {
+                id: StableId(4),
+                position_m: DVec3::new(800.0, 6_000.0, 0.0),
+                velocity_mps: DVec3::X * 70.0,
+                attitude: sim::frame::attitude(sim::frame::Angles { heading_rad: 1.5, ..Default::default() }),
+            },
+        ),
         (200, Command::CeaseFire { owner: tank }),
-        (210, Command::Reposition {
-            id: StableId(6),
-            position_m: DVec3::new(0.0, 3_000.0, 0.0),
-            velocity_mps: DVec3::ZERO,
-            attitude: DQuat::IDENTITY,
-        }),
+        (
+            210,
+            Command::Reposition {
+                id: StableId(6),
+                position_m: DVec3::new(0.0, 3_000.0, 0.0),
+                velocity_mps: DVec3::ZERO,
+                attitude: DQuat::IDENTITY,
+            },
+        ),
     ];
     for (step, command) in orders {
         scene.schedule(Stamped { step, command }).unwrap();
