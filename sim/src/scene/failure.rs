@@ -86,7 +86,7 @@ impl Tanks {
                 "fuel.fuel_kg: expected 0 or more and less than the model's mass of {model_mass_kg} kg, found {fuel_kg}"
             )));
         }
-        if !(flow_kgps >= 0.0 && flow_kgps < 1e6) {
+        if !(0.0..1e6).contains(&flow_kgps) {
             return Err(Refused::new(format_args!("fuel.flow_kgps: expected 0 or more, found {flow_kgps}")));
         }
         Ok(Self { fuel, first_kg: fuel_kg, frozen: false })

@@ -101,7 +101,7 @@ impl Surroundings {
     }
 
     pub(super) fn checked_turbulence(sigma_mps: f64) -> Result<f64, Refused> {
-        if sigma_mps >= 0.0 && sigma_mps <= MOST_WIND_MPS {
+        if (0.0..=MOST_WIND_MPS).contains(&sigma_mps) {
             Ok(sigma_mps)
         } else {
             Err(Refused::new(format_args!("turbulence: expected 0..={MOST_WIND_MPS} m/s, found {sigma_mps}")))

@@ -200,7 +200,7 @@ impl Route {
         for at in &self.waypoints_m {
             place("target.route_m", DVec3::new(at.x, 0.0, at.y))?;
         }
-        if let Some(leg) = self.waypoints_m.windows(2).position(|leg| !(leg[0].distance(leg[1]) >= SHORTEST_LEG_M)) {
+        if let Some(leg) = self.waypoints_m.windows(2).position(|leg| leg[0].distance(leg[1]) < SHORTEST_LEG_M) {
             return Err(Refused::new(format_args!(
                 "target.route_m: expected legs of at least {SHORTEST_LEG_M} m, found leg {leg} shorter"
             )));

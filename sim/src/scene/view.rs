@@ -91,7 +91,8 @@ pub(crate) fn interpolated(a: &Arc<[EntityView]>, b: &Arc<[EntityView]>, t: f64)
         match (left.peek(), right.peek()) {
             (Some(one), Some(other)) if one.id == other.id => {
                 all.push(EntityView::interpolate(one, other, t));
-                (left.next(), right.next());
+                left.next();
+                right.next();
             }
             (Some(one), Some(other)) if one.id < other.id => {
                 all.push(**one);
