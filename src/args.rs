@@ -206,8 +206,12 @@ pub struct SightArgs {
 /// `poligon simulate`
 #[derive(Debug, Args)]
 #[command(
-    after_help = "docs/files.md describes the files. Without --out and --json the rows go to stdout. A file that cannot be \
-                        used ends\nwith exit status 2, a flight that fails with 1; its rows up to there are written."
+    after_help = "docs/files.md describes the files. Without --out and --json the rows go to stdout. A file that cannot \
+                        be used ends\nwith exit status 2, a flight that fails with 1; its rows up to there are written.\n\n\
+                        Example, in assets/flight:\n  poligon simulate --model models/lin182.toml --case cases/lin182.toml \
+                        --inputs inputs/lin182.csv --out /tmp/o.csv\n\nThe least that flies, M.toml and C.toml:\n  \
+                        [body]\n  mass_kg = 5\n  inertia_kgm2 = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n\n  \
+                        [initial]\n  altitude_m = 1000\n  [run]\n  seconds = 10\n  dt_s = 0.01"
 )]
 pub struct SimulateArgs {
     /// The body: masses, controls, coefficients, thrusts, DAVE-ML files.
@@ -227,8 +231,11 @@ pub struct SimulateArgs {
 /// `poligon trajectory`
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Without --out and --json the rows themselves go to stdout. A file that cannot be used ends with \
-                        exit status 2."
+    after_help = "docs/files.md describes the files. Without --out and --json the rows go to stdout. A file that cannot \
+                        be used ends\nwith exit status 2.\n\nExample, in assets/ballistics:\n  poligon trajectory \
+                        --projectile projectiles/308_175gr.toml --case cases/rifle_1000m.toml\n\nThe least that \
+                        flies, P.toml and C.toml:\n  mass_kg = 0.01134\n  drag = \"G7\"\n  bc_lbpin2 = 0.243\n\n  \
+                        [shot]\n  speed_mps = 800\n  elevation_deg = 1"
 )]
 pub struct TrajectoryArgs {
     /// What flies: mass, drag, spin, motor.

@@ -422,8 +422,10 @@ pub struct Simulated {
     pub stiffness: Stiffness,
     /// What trim found.
     pub trim: Option<TrimFound>,
-    /// The last row, by column.
-    pub last: BTreeMap<String, f64>,
+    /// The last row, by column, in the order of the file.
+    pub last: serde_json::Map<String, serde_json::Value>,
+    /// The file of the rows.
+    pub out: Option<String>,
 }
 
 /// The fastest mode of a body, and what a step makes of it.

@@ -66,7 +66,17 @@ pub fn toml_text<T: DeserializeOwned>(file: &Path, text: &str) -> Result<T, File
             return Err(FileError::new(file, format_args!("{key}: expected a finite number, found {found}")));
         }
     }
-    toml::from_str(text).map_err(|error| FileError::new(file, error))
+    toml::from_str(text).map_err(|error| {
+        let told = error.to_string();
+        let hint = if told.contains("invalid type: map, expected a sequence") {
+            "\nhint: a table that may be there several times is written [[name]]"
+        } else if told.contains("expected a sequence") {
+            "\nhint: a list is written [a, b]"
+        } else {
+            ""
+        };
+        FileError::new(file, format_args!("{}{hint}", told.trim_end()))
+    })
 }
 
 /// The first number that is not finite, with the way to it.

@@ -19,6 +19,7 @@ pub mod frame;
 pub mod ground_contact;
 pub mod input;
 pub mod integrate;
+pub mod limit;
 pub mod planet;
 pub mod random;
 pub mod rigid;

@@ -181,6 +181,31 @@ mod tests {
     }
 
     #[test]
+    fn a_gun_that_stands_on_its_ground_fires_and_one_in_it_does_not() {
+        for frame in ["flat", "ellipsoid"] {
+            for (azimuth, elevation) in [(0, 45), (90, 10), (200, 80), (300, 1), (45, 89)] {
+                let fired = |over_m: f64| {
+                    let here = case(frame, "");
+                    let ground = hills(&here);
+                    let ground_m = ground.height_m(here.planet.position_m(here.initial.place)).unwrap();
+                    let text = format!(
+                        "[frame]\nkind = '{frame}'\n[initial]\nlat_deg = 42.2\nlon_deg = 78.3\naltitude_m = {:?}\n\
+                         [shot]\nspeed_mps = 563.9\nelevation_deg = {elevation}\nazimuth_deg = {azimuth}",
+                        ground_m + over_m
+                    );
+                    let case = Case::from_text(Path::new("c.toml"), &text).unwrap();
+                    let flown = shot(&case, &hills(&case));
+                    (flown.end().get(Column::Time).unwrap(), flown.end().event.clone())
+                };
+                // Hills of 900 m over 200 m posts are steep: a flat shot may end on the next one, but not at the muzzle.
+                let (time_s, event) = fired(1.5);
+                assert!(time_s > 1e-3, "{frame} {azimuth} {elevation}: {event} at {time_s} s");
+                assert_eq!(fired(-0.1), (0.0, "ground".to_owned()), "{frame} {azimuth} {elevation}");
+            }
+        }
+    }
+
+    #[test]
     fn a_flat_frame_lies_on_the_map_with_its_north_along_true_north() {
         let case = case("flat", "");
         let ground = hills(&case);

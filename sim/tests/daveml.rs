@@ -4,7 +4,6 @@
 
 use proptest::prelude::*;
 use sim::daveml::{DavemlError, Document, Kind};
-use std::hint::black_box;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -412,33 +411,5 @@ proptest! {
         let _ = Document::parse(&text);
         let _ = document(&text);
         let _ = sim::daveml::si_factor(&text);
-    }
-}
-
-/// Prints the cost of a run; asserts nothing.
-/// `cargo test -p poligon-sim --release --test daveml -- --ignored --nocapture`
-#[test]
-#[ignore = "prints times"]
-fn speed_of_a_run() {
-    for part in ["aero", "prop", "control", "gnc"] {
-        let Some(text) = model(&format!("{F16}/F16_{part}.dml")) else { return };
-        let document = Document::parse(&text).unwrap();
-        let inputs: Vec<_> = document.variables().iter().filter(|v| v.kind == Kind::Input).collect();
-        let outputs: Vec<_> = document.variables().iter().filter(|v| v.is_output).map(|v| v.id.as_str()).collect();
-        let ids: Vec<_> = inputs.iter().map(|v| v.id.as_str()).collect();
-        let program = document.program(&[], &ids, &outputs).unwrap();
-        let (mut memory, mut found) = (program.memory(), vec![0.0; outputs.len()]);
-        let points: Vec<[f64; 32]> =
-            (0..64u32).map(|step| std::array::from_fn(|at| f64::from((step * (at as u32 + 1)) % 97) * 0.1)).collect();
-        let mut best = f64::INFINITY;
-        for _ in 0..7 {
-            let started = Instant::now();
-            for step in 0..200_000 {
-                program.run(black_box(&points[step % 64][..ids.len()]), &mut memory, &mut found);
-                black_box(&found);
-            }
-            best = best.min(started.elapsed().as_secs_f64() / 200_000.0);
-        }
-        println!("{part}: {} operations, {:.0} ns a run", program.operations(), best * 1e9);
     }
 }

@@ -249,7 +249,7 @@ fn bodies_that_cannot_be_are_refused_with_the_key() {
         ),
         (
             fine.clone() + "[reference]\narea_m2 = 1\n[[aero.term]]\nto = \"CD\"\nvalue = 1\ntimes = [\"alfa_rad\"]\n",
-            "found alfa_rad",
+            "found alfa_rad, expected one of alpha_rad",
         ),
         (
             fine.clone() + "[reference]\narea_m2 = 1\n[[aero.term]]\nto = \"CD\"\ntable = \"none\"\n",

@@ -7,7 +7,7 @@ use crate::output::{self, Output};
 use crate::report::{Simulated, Stiffness, TrimFound};
 use sim::case::Case;
 use sim::file::FileError;
-use sim::rigid::column::COLUMNS;
+use sim::rigid::column::{AGL, COLUMNS};
 use sim::rigid::simulation::Ending;
 use sim::rigid::stop::Stop;
 use sim::rigid::{Inputs, Model, Simulation};
@@ -26,6 +26,12 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), Failure> {
         Some(file) => Inputs::read(file, &model.controls).map_err(unusable)?,
         None => Inputs::default(),
     };
+    for note in model.notes.iter().map(|note| format!("{}: {note}", args.model.display())) {
+        output::tell(format_args!("poligon: {note}"));
+    }
+    if let Some(file) = &args.inputs {
+        inputs.notes.iter().for_each(|note| output::tell(format_args!("poligon: {}: {note}", file.display())));
+    }
     let wrong = |why: String| Failure::Misuse(FileError::new(&args.case, why).to_string());
     let Some(seconds) = case.run.seconds else {
         return Err(wrong("run.seconds: expected how long to fly, found none".to_owned()));
@@ -37,6 +43,13 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), Failure> {
     let names: Vec<String> =
         COLUMNS.iter().map(|name| (*name).to_owned()).chain(model.controls.iter().map(|c| c.name.clone())).collect();
     let mut flight = Simulation::new(model, &case, inputs, ground).map_err(unusable)?;
+    let start_agl_m = flight.row()[AGL];
+    if case.run.world.is_some() && start_agl_m.is_nan() {
+        return Err(wrong("initial: expected a place that the world has ground for".to_owned()));
+    }
+    if case.run.world.is_some() && start_agl_m < 0.0 {
+        output::tell(format_args!("poligon: the start lies {:.1} m under the ground", -start_agl_m));
+    }
     let stops: Vec<Stop> = case
         .run
         .stop
@@ -60,6 +73,14 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), Failure> {
         Some(file) => output::write_whole(file, text.as_bytes())?,
         None if output == Output::Table => output::print_text(&text)?,
         None => {}
+    }
+    let end_agl_m = last.get(AGL).copied().unwrap_or(0.0);
+    if case.run.world.is_some() && end_agl_m.is_nan() {
+        output::tell(format_args!("poligon: the flight left the ground that the world has"));
+    } else if end_agl_m < -0.01 && start_agl_m >= 0.0 {
+        output::tell(format_args!(
+            "poligon: the flight went on under the ground; run.stop = [\"ground\"] ends it there"
+        ));
     }
     let fastest = flight.stiffness;
     let limit = case.run.integrator.damping_limit();
@@ -86,7 +107,9 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), Failure> {
                 values: found.values.iter().cloned().collect(),
                 residuals: found.residuals.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
             }),
-            last: names.into_iter().zip(last).collect(),
+            // Zero is added so that no -0 is printed.
+            last: names.into_iter().zip(last.into_iter().map(|value| (value + 0.0).into())).collect(),
+            out: args.out.as_ref().map(|path| path.display().to_string()),
         })?;
     }
     match ending {

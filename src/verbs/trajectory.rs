@@ -11,8 +11,9 @@ use crate::report::TrajectoryReport;
 use sim::ballistics::column::Column;
 use sim::ballistics::drift::MOST_STABILITY;
 use sim::ballistics::projectile::Projectile;
-use sim::ballistics::trajectory::{Trajectory, TrajectoryError, fly};
+use sim::ballistics::trajectory::{FLOOR, Trajectory, TrajectoryError, fly};
 use sim::case::Case;
+use sim::file::FileError;
 use sim::world_ground::WorldGround;
 use std::path::Path;
 
@@ -21,11 +22,20 @@ use std::path::Path;
 /// # Errors
 /// [`Failure::Misuse`] names the file and the key that cannot be used; [`Failure::Failed`] says what stopped the flight.
 pub fn run(args: &TrajectoryArgs, output: Output) -> Result<(), Failure> {
-    let misuse = |error: sim::file::FileError| Failure::Misuse(error.to_string());
+    let misuse = |error: FileError| Failure::Misuse(error.to_string());
     let projectile = Projectile::read(&args.projectile).map_err(misuse)?;
     let case = Case::read(&args.case).map_err(misuse)?;
     let world = open_world::of_case(&case)?;
     let ground = world.as_ref().map(|world| WorldGround::new(world, &case));
+    if let Some(ground) = &ground {
+        let muzzle_m = case.initial.flat_m.unwrap_or_else(|| case.planet.position_m(case.initial.place));
+        let why = "initial: expected a place that the world has ground for";
+        let ground_m = ground.height_m(muzzle_m).ok_or_else(|| misuse(FileError::new(&args.case, why)))?;
+        let under_m = ground_m - ground.place(muzzle_m).altitude_m;
+        if under_m > 0.0 {
+            output::tell(format_args!("poligon: the muzzle lies {under_m:.1} m under the ground"));
+        }
+    }
     let flown = fly(&projectile, &case, ground.as_ref()).map_err(|error| match error {
         TrajectoryError::Input(error) => misuse(error),
         error => Failure::Failed(error.to_string()),
@@ -35,6 +45,9 @@ pub fn run(args: &TrajectoryArgs, output: Output) -> Result<(), Failure> {
     {
         let stability = drift.stability;
         output::tell(format_args!("poligon: gyroscopic stability {stability:.2}: spin drift is no estimate there"));
+    }
+    if ground.is_some() && flown.end().event == FLOOR {
+        output::tell(format_args!("poligon: the shot left the ground that the world has"));
     }
     if let Some(path) = &args.out {
         output::write_whole(path, flown.to_csv().as_bytes())?;

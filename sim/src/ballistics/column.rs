@@ -5,6 +5,7 @@
 //! else the length of the shortest way over the surface times the cosine of its bearing against the azimuth), and
 //! `fall_deg`, the angle of the path under the horizontal of the place.
 
+use crate::limit::{Limit, Relation};
 use std::fmt;
 
 /// A number of a state.
@@ -60,31 +61,7 @@ pub enum End {
     /// The muzzle's altitude, met from above.
     Return,
     /// A column reaches a value.
-    Column(Limit),
-}
-
-/// A value that a column reaches. Its text is the event.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Limit {
-    /// The column.
-    pub column: Column,
-    /// Where it ends.
-    pub relation: Relation,
-    /// The value.
-    pub value: f64,
-    /// As it was written.
-    pub text: String,
-}
-
-/// On which side of the value it is over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Relation {
-    /// When the value is passed, either way; being there at the start does not count.
-    Equal,
-    /// As soon as it is below.
-    Below,
-    /// As soon as it is above.
-    Above,
+    Column(Limit<Column>),
 }
 
 impl End {
@@ -93,25 +70,9 @@ impl End {
     /// # Errors
     /// A sentence with what was expected and what was found.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let text = text.trim();
-        if text == "ground" {
-            return Ok(Self::Ground);
-        }
-        let refuse = || {
-            let names = NAMES.map(|(_, name)| name).join(", ");
-            let shown: String = text.chars().take(60).collect();
-            format!("expected ground or NAME=value, NAME<value, NAME>value with a name of {names}, found {shown:?}")
-        };
-        let at = text.find(['=', '<', '>']).ok_or_else(refuse)?;
-        let (name, value) = (text[..at].trim(), text[at + 1..].trim());
-        let relation = match &text[at..=at] {
-            "=" => Relation::Equal,
-            "<" => Relation::Below,
-            _ => Relation::Above,
-        };
-        let column = NAMES.iter().find(|(_, known)| *known == name).map(|(column, _)| *column).ok_or_else(refuse)?;
-        let value = value.parse::<f64>().ok().filter(|value| value.abs() <= 1e12).ok_or_else(refuse)?;
-        Ok(Self::Column(Limit { column, relation, value, text: text.to_owned() }))
+        let column = |name: &str| NAMES.iter().find(|(_, known)| *known == name).map(|(column, _)| *column);
+        let limit = Limit::parse(text, column, || NAMES.map(|(_, name)| name).join(", "))?;
+        Ok(limit.map_or(Self::Ground, Self::Column))
     }
 
     /// The name of the event.
@@ -124,7 +85,7 @@ impl End {
     }
 }
 
-impl Limit {
+impl Limit<Column> {
     /// How far a value is from the limit; for longitudes the short way round.
     pub fn beyond(&self, value: f64) -> f64 {
         let beyond = value - self.value;
@@ -136,13 +97,9 @@ impl Limit {
 
     /// Whether the limit is passed between two values of [`Self::beyond`].
     pub fn passed(&self, from: f64, to: f64) -> bool {
-        match self.relation {
-            // A longitude opposite to the limit changes its sign too.
-            Relation::Equal if self.column == Column::Lon && (to - from).abs() > 180.0 => false,
-            Relation::Equal => from != 0.0 && from * to <= 0.0,
-            Relation::Below => to < 0.0,
-            Relation::Above => to > 0.0,
-        }
+        // A longitude opposite to the limit changes its sign too.
+        let around = self.relation == Relation::Equal && self.column == Column::Lon && (to - from).abs() > 180.0;
+        !around && self.relation.passed(from, to)
     }
 }
 

@@ -114,14 +114,15 @@ impl DragCurve {
 
 /// The rows of a text: a header, then two numbers a line. Blank lines, CRLF and a byte order mark are taken.
 fn rows(text: &str) -> Result<Vec<[f64; 2]>, Wrong> {
-    let mut lines = text.strip_prefix('\u{feff}').unwrap_or(text).lines().enumerate();
-    let header = lines.next().map_or("", |(_, line)| line);
+    let said = |(_, line): &(usize, &str)| !line.trim().is_empty() && !line.trim_start().starts_with('#');
+    let mut lines = text.strip_prefix('\u{feff}').unwrap_or(text).lines().enumerate().filter(said);
+    let (first, header) = lines.next().unwrap_or((0, ""));
     if header.split(',').map(str::trim).ne(["mach", "cd"]) {
-        return Err(Wrong { line: 1, expected: "the header `mach,cd`".to_owned(), found: shown(header) });
+        return Err(Wrong { line: first + 1, expected: "the header `mach,cd`".to_owned(), found: shown(header) });
     }
     let mut rows: Vec<[f64; 2]> = Vec::new();
-    let mut last = 1;
-    for (index, text) in lines.filter(|(_, text)| !text.trim().is_empty()) {
+    let mut last = first + 1;
+    for (index, text) in lines {
         last = index + 1;
         let wrong = |expected: String, found: &str| Wrong { line: index + 1, expected, found: shown(found) };
         let Some((mach, cd)) = text.split_once(',').filter(|(_, cd)| !cd.contains(',')) else {

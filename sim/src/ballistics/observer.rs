@@ -3,12 +3,13 @@
 //! Invariant others rely on: rows, ends and the ground all see the same position, the integrated one moved to the right by
 //! the drift; see [`super::drift`].
 
-use super::column::{Column, Limit};
+use super::column::Column;
 use super::drift::SpinDrift;
 use super::geodesic;
 use super::launch::Launch;
 use super::motion::{ShellMotion, State, parts, state};
 use crate::case::Case;
+use crate::limit::Limit;
 use crate::planet::Place;
 use crate::world_ground::WorldGround;
 use glam::DVec3;
@@ -103,7 +104,7 @@ impl Observer<'_> {
     }
 
     /// How far a seen state is from a limit.
-    pub fn beyond(&self, limit: &Limit, motion: &ShellMotion, t_s: f64, seen: &State) -> f64 {
+    pub fn beyond(&self, limit: &Limit<Column>, motion: &ShellMotion, t_s: f64, seen: &State) -> f64 {
         limit.beyond(self.value(limit.column, motion, t_s, seen))
     }
 }

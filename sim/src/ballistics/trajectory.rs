@@ -11,7 +11,7 @@
 //! altitude 0 (event `floor`).
 //! A muzzle in or under the ground, where ground ends a shot, ends it at once.
 
-use super::column::{Column, End, IN_FILE, NAMES, Relation};
+use super::column::{Column, End, IN_FILE, NAMES};
 use super::drift::SpinDrift;
 use super::launch::{Launch, STEP_S};
 use super::motion::{ShellMotion, State, StepError, advance, parts, state};
@@ -20,8 +20,12 @@ use super::projectile::Projectile;
 use crate::case::{Case, MOST_STEPS};
 use crate::file::FileError;
 use crate::integrate::Before;
+use crate::limit::Relation;
 use crate::world_ground::WorldGround;
 use std::fmt;
+
+/// The event of a shot that fell below every ground.
+pub const FLOOR: &str = "floor";
 
 /// Longest flight where a case gives none, seconds.
 pub const LONGEST_S: f64 = 3_600.0;
@@ -220,7 +224,7 @@ impl<'a> Flight<'a> {
                 return Ok(self.finished(rows, to_s, next, "time".to_owned(), apex_m, taken));
             }
             if self.observer.altitude_m(&next) < self.floor_m {
-                return Ok(self.finished(rows, to_s, next, "floor".to_owned(), apex_m, taken));
+                return Ok(self.finished(rows, to_s, next, FLOOR.to_owned(), apex_m, taken));
             }
             if taken as f64 > MOST_STEPS {
                 return Err(TrajectoryError::TooMuch { what: "steps", most: MOST_STEPS, t_s });
@@ -241,9 +245,10 @@ impl<'a> Flight<'a> {
         let seen = self.observer.seen(0.0, &self.start);
         let over = |end: &&End| match end {
             End::Return => false,
-            // A path of no length: on or under the ground, or not.
             End::Ground if self.observer.ground.is_some() => {
-                self.observer.ground.is_some_and(|ground| ground.impact(parts(&seen), parts(&seen), 1.0).is_some())
+                let position_m = parts(&seen).0;
+                let ground_m = self.observer.ground.and_then(|ground| ground.height_m(position_m));
+                ground_m.is_some_and(|ground_m| self.observer.altitude_m(&seen) <= ground_m)
             }
             End::Ground => {
                 let altitude_m = self.observer.altitude_m(&seen);

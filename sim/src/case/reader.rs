@@ -109,8 +109,7 @@ struct WindFile {
 #[serde(deny_unknown_fields)]
 struct TurbulenceFile {
     kind: TurbulenceKind,
-    #[serde(default)]
-    sigma_mps: f64,
+    sigma_mps: Option<f64>,
     #[serde(default)]
     seed: u64,
 }
@@ -308,9 +307,12 @@ fn wind(rows: &[WindFile]) -> Result<Wind, String> {
 
 impl TurbulenceFile {
     fn checked(self) -> Result<Option<Turbulence>, String> {
-        within("turbulence.sigma_mps", Some(self.sigma_mps), 0.0, 100.0)?;
-        let wanted = self.kind == TurbulenceKind::Dryden && self.sigma_mps > 0.0;
-        Ok(wanted.then_some(Turbulence { sigma_mps: self.sigma_mps, seed: self.seed }))
+        within("turbulence.sigma_mps", self.sigma_mps, 0.0, 100.0)?;
+        match (self.kind, self.sigma_mps) {
+            (TurbulenceKind::None, _) => Ok(None),
+            (TurbulenceKind::Dryden, None) => Err("turbulence.sigma_mps: expected m/s, found none".to_owned()),
+            (TurbulenceKind::Dryden, Some(sigma_mps)) => Ok(Some(Turbulence { sigma_mps, seed: self.seed })),
+        }
     }
 }
 

@@ -21,6 +21,8 @@ pub struct Edge {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Inputs {
     edges: Vec<Edge>,
+    /// The first value of each control that is beyond its limits and held there; sentences.
+    pub notes: Vec<String>,
 }
 
 impl Inputs {
@@ -58,7 +60,7 @@ impl Inputs {
             }
             columns.push(place);
         }
-        let mut edges: Vec<Edge> = Vec::new();
+        let (mut edges, mut notes, mut noted): (Vec<Edge>, Vec<String>, Vec<usize>) = Default::default();
         for (at, line) in lines {
             let cells: Vec<&str> = line.split(',').map(str::trim).collect();
             if cells.len() != columns.len() + 1 {
@@ -76,11 +78,18 @@ impl Inputs {
             let mut changes = Vec::new();
             for (&place, cell) in columns.iter().zip(&cells[1..]).filter(|(_, cell)| !cell.is_empty()) {
                 let control = &controls[place];
-                changes.push((place, number(&control.name, cell)?.clamp(control.min, control.max)));
+                let given = number(&control.name, cell)?;
+                let value = given.clamp(control.min, control.max);
+                if value != given && !noted.contains(&place) {
+                    noted.push(place);
+                    let name = &control.name;
+                    notes.push(format!("line {}: {name} {given} is beyond its limits and held at {value}", at + 1));
+                }
+                changes.push((place, value));
             }
             edges.push(Edge { t_s, changes });
         }
-        Ok(Self { edges })
+        Ok(Self { edges, notes })
     }
 
     /// The rows.
@@ -108,6 +117,7 @@ mod tests {
         let inputs = read("# stick\nt_s,throttle_norm,elevator_rad\n0,0.5,\n\n1.5,,-7\r\n").unwrap();
         assert_eq!(inputs.edges()[0], Edge { t_s: 0.0, changes: vec![(1, 0.5)] });
         assert_eq!(inputs.edges()[1], Edge { t_s: 1.5, changes: vec![(0, -1.0)] });
+        assert_eq!(inputs.notes, ["line 5: elevator_rad -7 is beyond its limits and held at -1"]);
         assert!(read("t_s\n0\n1").unwrap().edges()[1].changes.is_empty());
     }
 

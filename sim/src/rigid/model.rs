@@ -9,7 +9,7 @@
 use super::aero::{Axes, BoundTable, COEFFICIENTS, Coefficient, Factors, Flow, MOST_TABLES, Tables, Term, Thrust};
 use super::links::{self, Found, LinkMemory, Links, Source};
 use super::model_file::{AxesFile, ControlFile, ModelFile, OutsideFile, ThrustFile};
-use super::quantity::{MOST_CONTROLS, QUANTITIES, Quantity, SLOTS, without_unit};
+use super::quantity::{MOST_CONTROLS, QUANTITIES, Quantity, SLOTS, unit_names, without_unit};
 use crate::case::Setting;
 use crate::daveml::{Document, si_factor};
 use crate::file::{self, FileError};
@@ -80,6 +80,8 @@ pub struct Model {
     uses: [bool; QUANTITIES],
     course: Course,
     refuses: bool,
+    /// What looks like a slip in the file, though it can be flown; sentences.
+    pub notes: Vec<String>,
 }
 
 /// Force and moment about the centre of gravity, body axes, without gravity.
@@ -178,6 +180,7 @@ impl Model {
             uses: [false; QUANTITIES],
             course: Course::None,
             refuses: false,
+            notes: notes(&file),
         };
         model.refuses = model.tables.0.iter().any(|bound| bound.refuse_outside);
         model.note_uses();
@@ -307,6 +310,24 @@ impl Model {
     }
 }
 
+/// Tables that nothing asks for, and angles in radians that are more than a turn.
+fn notes(file: &ModelFile) -> Vec<String> {
+    let mut notes = Vec::new();
+    for (name, table) in &file.table {
+        let asked = |of: &Option<String>| of.as_ref() == Some(name);
+        if !file.aero.term.iter().any(|term| asked(&term.table)) && !file.thrust.iter().any(|t| asked(&t.table)) {
+            notes.push(format!("table.{name}: no term and no thrust asks for it"));
+        }
+        for (axis, breakpoints) in table.axes.iter().zip(&table.breakpoints) {
+            let most = breakpoints.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+            if axis.ends_with("_rad") && most > std::f64::consts::TAU {
+                notes.push(format!("table.{name}: {axis} reaches {most} rad; are these degrees?"));
+            }
+        }
+    }
+    notes
+}
+
 /// Whether a reference length counts for any coefficient of the file.
 fn needs(key: &str, terms: &[Term], file: &ModelFile) -> bool {
     let moment = |c: Coefficient| terms.iter().any(|t| t.to == c as usize);
@@ -336,7 +357,7 @@ fn controls(file: &BTreeMap<String, ControlFile>) -> Result<Vec<Control>, String
     }
     let one = |(name, control): (&String, &ControlFile)| {
         if without_unit(name).is_none() {
-            return Err(format!("controls.{name}: expected a name that ends in _rad, _deg, _norm or another unit"));
+            return Err(format!("controls.{name}: expected a name that ends in a unit: {}", unit_names()));
         }
         if Quantity::named(name).is_some() {
             return Err(format!("controls.{name}: expected another name, this is a quantity of the flight"));
@@ -405,7 +426,7 @@ fn slots(key: &str, names: &[String], controls: &[Control]) -> Result<Vec<usize>
         slot(name, controls).ok_or_else(|| {
             let known: Vec<&str> =
                 super::quantity::ALL.iter().map(|q| q.1).chain(controls.iter().map(|c| c.name.as_str())).collect();
-            format!("{key}: expected one of {}, found {name}", known.join(", "))
+            format!("{key}: found {name}, expected one of {}", known.join(", "))
         })
     };
     names.iter().map(one).collect()

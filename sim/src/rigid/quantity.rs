@@ -104,6 +104,11 @@ pub fn without_unit(name: &str) -> Option<(&str, f64)> {
         .filter(|(stem, _)| !stem.is_empty())
 }
 
+/// The units that a name may end with, for errors.
+pub fn unit_names() -> String {
+    SUFFIXES.map(|(suffix, _)| suffix).join(", ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

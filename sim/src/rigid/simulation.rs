@@ -224,10 +224,6 @@ impl Simulation {
     }
 
     /// The state a part of a step later, by fourth order, without taking it.
-    fn glimpse(&self, ahead_s: f64) -> State {
-        self.glimpse_from(self.t_s, &self.y, ahead_s)
-    }
-
     fn glimpse_from(&self, from_s: f64, from: &State, ahead_s: f64) -> State {
         let piece_s = ahead_s / f64::from(self.pieces);
         let mut y = *from;
@@ -247,11 +243,16 @@ impl Simulation {
             self.y = motion::normalised(y);
             self.steps += 1;
         }
+        self.t_s = until_s;
+    }
+
+    /// What a step ends with: the gust of the next one, and inputs up to now.
+    fn settle(&mut self, step_s: f64) {
         if let Some(gust) = &mut self.gust {
-            gust.step(until_s - self.t_s, self.motion.sample(&self.y, false).slots[Quantity::TasMps.slot()]);
+            gust.step(step_s, self.motion.sample(&self.y, false).slots[Quantity::TasMps.slot()]);
             self.motion.gust_mps = gust.gust_mps();
         }
-        self.t_s = until_s;
+        self.apply_edges();
     }
 
     /// The end of the step that begins now: on the grid, or at an input edge before it.
@@ -270,8 +271,9 @@ impl Simulation {
             self.pieces = MOST_PIECES;
         }
         self.look_in = self.look_in.saturating_sub(1);
+        let step_s = until_s - self.t_s;
         self.advance(until_s);
-        self.apply_edges();
+        self.settle(step_s);
     }
 
     /// Flies for `seconds`, and gives a row each `row_s` and at the start and end, with what happened there.
@@ -279,10 +281,11 @@ impl Simulation {
         let end_s = self.t_s + seconds;
         let first_s = self.t_s;
         let mut rows = 1.0;
-        let mut row = self.row();
-        emit(&row, "start");
-        if let Some(stop) = stops.iter().find(|stop| self.stopped(stop, self.t_s, &self.y, ON_IT)) {
-            return Ending::Stop(stop.words.clone());
+        emit(&self.row(), "start");
+        if let Some(stop) =
+            stops.iter().find(|stop| stop.limit.relation.at_start(self.beyond(stop, self.t_s, &self.y), ON_IT))
+        {
+            return Ending::Stop(stop.limit.text.clone());
         }
         while self.t_s < end_s - SAME_S {
             if (self.look_in == 0 || self.motion.model.refuses())
@@ -293,34 +296,33 @@ impl Simulation {
             }
             self.look_in -= 1;
             let until_s = self.step_end(end_s);
-            while first_s + rows * row_s < until_s - SAME_S {
+            let good = self.clone_at();
+            self.advance(until_s);
+            let finite = self.y.iter().all(|x| x.is_finite());
+            let stop = if finite { self.first_stop(&good, stops) } else { None };
+            let over_s = stop.map_or(until_s, |(ahead_s, _)| good.0 + ahead_s);
+            while first_s + rows * row_s < over_s - SAME_S {
                 let t_s = first_s + rows * row_s;
                 rows += 1.0;
-                let y = self.glimpse(t_s - self.t_s);
-                if y.iter().all(|x| x.is_finite()) && !stops.iter().any(|stop| self.stopped(stop, t_s, &y, 0.0)) {
+                let y = self.glimpse_from(good.0, &good.1, t_s - good.0);
+                if y.iter().all(|x| x.is_finite()) {
                     emit(&self.row_of(t_s, &y), "");
                 }
             }
-            let good = self.clone_at();
-            self.advance(until_s);
-            if !self.y.iter().all(|x| x.is_finite()) {
+            if !finite {
                 self.restore(good);
                 emit(&self.row(), "failed");
                 return Ending::Failed(format!("after {} s a number of the state is no longer finite", self.t_s));
             }
-            if let Some((ahead_s, stop)) = self.first_stop(&good, stops) {
-                let t_end_s = good.0 + ahead_s;
-                self.restore(good);
-                self.y = self.glimpse(ahead_s);
-                self.t_s = t_end_s;
-                emit(&self.row(), &format!("stop: {}", stop.words));
-                return Ending::Stop(stop.words.clone());
+            if let Some((ahead_s, stop)) = stop {
+                (self.y, self.t_s) = (self.glimpse_from(good.0, &good.1, ahead_s), over_s);
+                emit(&self.row(), &format!("stop: {}", stop.limit.text));
+                return Ending::Stop(stop.limit.text.clone());
             }
-            self.apply_edges();
+            self.settle(until_s - good.0);
             if self.t_s < end_s - SAME_S && (first_s + rows * row_s - self.t_s).abs() <= SAME_S {
                 rows += 1.0;
-                row = self.row();
-                emit(&row, "");
+                emit(&self.row(), "");
             }
         }
         emit(&self.row(), "end");
@@ -335,12 +337,15 @@ impl Simulation {
         (self.t_s, self.y, self.before) = (t_s, y, before);
     }
 
-    fn stopped(&self, stop: &Stop, t_s: f64, y: &State, margin: f64) -> bool {
-        stop.holds(margin, |place| match (place, COLUMNS.get(place)) {
+    /// How far the column of a stop is above the stop's value.
+    fn beyond(&self, stop: &Stop, t_s: f64, y: &State) -> f64 {
+        let place = stop.limit.column;
+        let value = match (place, COLUMNS.get(place)) {
             (column::AGL, _) => self.ground_m(y).map_or(f64::INFINITY, |ground| self.place(y).altitude_m - ground),
             (_, Some(&"altitude_m")) => self.motion.planet.altitude_m(motion::position(y)),
-            (place, _) => self.row_of(t_s, y)[place],
-        })
+            _ => self.row_of(t_s, y)[place],
+        };
+        value - stop.limit.value
     }
 
     /// The first stop within the step from `good` to now: how far ahead of `good`, seconds.
@@ -350,10 +355,13 @@ impl Simulation {
         for stop in stops {
             let ends = |y: &State| (motion::position(y), motion::velocity(y));
             let ahead_s = match &self.ground {
-                Some(ground) if stop.is_ground() => {
+                Some(ground) if stop.is_ground => {
                     ground.impact(ends(&good.1), ends(&self.y), step_s).map(|impact| impact.time_s)
                 }
-                _ => self.stopped(stop, self.t_s, &self.y, 0.0).then(|| self.crossing_s(stop, good, step_s)),
+                _ => {
+                    let (from, to) = (self.beyond(stop, good.0, &good.1), self.beyond(stop, self.t_s, &self.y));
+                    stop.limit.relation.passed(from, to).then(|| self.crossing_s(stop, from, good, step_s))
+                }
             };
             if let Some(ahead_s) = ahead_s.filter(|ahead_s| first.is_none_or(|(before, _)| *ahead_s < before)) {
                 first = Some((ahead_s, stop));
@@ -362,8 +370,8 @@ impl Simulation {
         first
     }
 
-    /// When a stop that does not hold at the step's start begins to hold, seconds after it.
-    fn crossing_s(&self, stop: &Stop, good: &(f64, State, Before<f64, N>), step_s: f64) -> f64 {
+    /// When a stop whose column is `from` above its value at the step's start is passed, seconds after it.
+    fn crossing_s(&self, stop: &Stop, from: f64, good: &(f64, State, Before<f64, N>), step_s: f64) -> f64 {
         let (mut low, mut high) = (0.0, step_s);
         // The time to f64 rounding: each look halves the step.
         for _ in 0..60 {
@@ -372,7 +380,8 @@ impl Simulation {
                 break;
             }
             let there = self.glimpse_from(good.0, &good.1, middle);
-            if self.stopped(stop, good.0 + middle, &there, 0.0) { high = middle } else { low = middle }
+            let passed = stop.limit.relation.passed(from, self.beyond(stop, good.0 + middle, &there));
+            (low, high) = if passed { (low, middle) } else { (middle, high) };
         }
         high
     }

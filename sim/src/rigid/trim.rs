@@ -66,8 +66,15 @@ pub fn trim(motion: &mut RigidMotion, initial: &Initial, wanted: &Trim) -> Resul
         Attitude::Quaternion(_) => motion::angles_of(&glam::DMat3::from_quat(start::ned_from_body(&initial.attitude))),
     };
     if unknowns.contains(&Unknown::Alpha) {
+        if matches!(initial.velocity, Velocity::Body(_)) {
+            return Err("trim.vary: alpha_deg: expected velocity_ned_mps, velocity_body_mps fixes it".to_owned());
+        }
         // An angle of attack is counted from the path.
         angles[1] = 0.0;
+    }
+    let (Velocity::Ned(velocity) | Velocity::Body(velocity)) = initial.velocity;
+    if velocity == DVec3::ZERO && !unknowns.contains(&Unknown::Speed) {
+        return Err("trim: expected a velocity in [initial] to hold, found none".to_owned());
     }
     let problem = Problem { initial, angles, unknowns: &unknowns };
     let mut x: Vec<f64> = unknowns.iter().map(|unknown| problem.value(motion, *unknown)).collect();
@@ -110,7 +117,19 @@ pub fn trim(motion: &mut RigidMotion, initial: &Initial, wanted: &Trim) -> Resul
         let told: Vec<String> = residuals.iter().map(|(name, value)| format!("{name} {value:.3e}")).collect();
         let at = wanted.vary.iter().zip(x.iter().zip(&units));
         let at: Vec<String> = at.map(|(name, (x, si))| format!("{name} {}", x / si)).collect();
-        return Err(format!("trim: no state found that is held; left are {} at {}", told.join(", "), at.join(", ")));
+        let limits = unknowns.iter().zip(&x).filter_map(|(unknown, x)| match unknown {
+            Unknown::Control(place) => {
+                let control = &model.controls[*place];
+                (*x <= control.min || *x >= control.max).then(|| format!("; {} stands at its limit", control.name))
+            }
+            _ => None,
+        });
+        let limits: String = limits.collect();
+        return Err(format!(
+            "trim: no balance found; nearest: {} left over at {}{limits}; {many} accelerations take {many} unknowns",
+            told.join(", "),
+            at.join(", ")
+        ));
     }
     let values = wanted.vary.iter().cloned().zip(x.iter().zip(&units).map(|(x, si)| x / si));
     Ok(Trimmed { initial: found, values: values.collect(), residuals })
@@ -176,6 +195,14 @@ impl Problem<'_> {
         }
     }
 
+    /// Angle of the way through the air over the horizon, radians.
+    fn air_path_rad(&self, motion: &RigidMotion, velocity: &Velocity) -> f64 {
+        let (Velocity::Ned(ned) | Velocity::Body(ned)) = *velocity;
+        let altitude_m = self.initial.flat_m.map_or(self.initial.place.altitude_m, |at| -at.z);
+        let air = ned - motion.wind.ned_mps(altitude_m);
+        (-air.z).atan2(air.x.hypot(air.y))
+    }
+
     fn scale(&self, motion: &RigidMotion, unknown: Unknown) -> f64 {
         match unknown {
             Unknown::Control(place) => {
@@ -197,7 +224,8 @@ impl Problem<'_> {
                 Unknown::Roll => angles[0] = *value,
                 Unknown::Pitch => angles[1] = *value,
                 Unknown::Yaw => angles[2] = *value,
-                Unknown::Alpha => angles[1] = *value + path_rad(&initial.velocity),
+                // Level wings: the angle of attack and the climb through the air make the pitch.
+                Unknown::Alpha => angles[1] = *value + self.air_path_rad(motion, &initial.velocity),
                 Unknown::Speed => initial.velocity = at_speed(&initial.velocity, *value),
             }
         }
@@ -224,14 +252,6 @@ fn accelerations(motion: &RigidMotion, y: &State) -> [f64; 6] {
     let ahead = if level.length() > 0.1 { level } else { DVec3::new(nose.x, nose.y, 0.0) }.normalize_or(DVec3::X);
     let right = DVec3::new(-ahead.y, ahead.x, 0.0);
     [local.dot(ahead), local.z, rate[12], local.dot(right), rate[11], rate[13]]
-}
-
-/// Angle of a velocity over the horizon, radians.
-fn path_rad(velocity: &Velocity) -> f64 {
-    match velocity {
-        Velocity::Ned(ned) => (-ned.z).atan2(ned.x.hypot(ned.y)),
-        Velocity::Body(_) => 0.0,
-    }
 }
 
 fn at_speed(velocity: &Velocity, speed_mps: f64) -> Velocity {

@@ -2,8 +2,6 @@
 
 use super::*;
 use proptest::prelude::*;
-use std::hint::black_box;
-use std::time::Instant;
 
 /// The obvious way: multiply out the corners of the cell with their weights.
 fn slow_linear(axes: &[Vec<f64>], values: &[f64], point: &[f64]) -> f64 {
@@ -192,24 +190,4 @@ fn numbers_that_are_no_table_are_refused_with_their_place() {
     assert!(matches!(table(&[&[0.0, f64::NAN]], &[0.0; 2]), TableError::Number { .. }));
     assert_eq!(table(&[&[0.0, 5e-324]], &[0.0, 1.0]), TableError::Steep { axis: 0 });
     assert_eq!(falling.to_string(), "axis 1: breakpoint 2 must be above 4, the one before, found 4");
-}
-
-/// Prints the cost of a look-up; asserts nothing: `cargo test -p poligon-sim --release -- --ignored --nocapture speed`.
-#[test]
-#[ignore = "prints times"]
-fn speed_of_a_look_up() {
-    let points: Vec<f64> = (0..12).map(f64::from).collect();
-    for kind in [Interpolation::Linear, Interpolation::Pchip] {
-        for axes in 1..=3 {
-            let values = (0..12usize.pow(axes)).map(|v| (v as f64).sin()).collect();
-            let table = Table::new(vec![points.clone(); axes as usize], values, kind).unwrap();
-            let started = Instant::now();
-            let mut sum = 0.0;
-            for step in 0..1_000_000u32 {
-                let x = f64::from(step % 1_201) * 0.01;
-                sum += table.at(black_box(&[x, 11.0 - x, x * 0.5][..axes as usize]));
-            }
-            println!("{kind:?} {axes} axes: {:.1} ns ({sum:.3})", started.elapsed().as_secs_f64() * 1e3);
-        }
-    }
 }
