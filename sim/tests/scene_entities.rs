@@ -64,6 +64,8 @@ fn the_record_replays_to_the_same_hash() {
     let ground = mountains();
     let (mut first, start) = (busy(), busy().save());
     first.start_record();
+    let nobody = Command::Clear { id: StableId(99), name: "jam".to_owned() };
+    first.schedule(sim::scene::Stamped { step: 33, command: nobody }).unwrap();
     for step in 0..300 {
         if step % 50 == 7 {
             first.order(Command::Turbulence(f64::from(step) * 0.01)).unwrap();

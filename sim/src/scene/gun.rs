@@ -123,7 +123,8 @@ impl Burst {
             return Err(Refused::new("fire.rounds: expected at least 1, found 0"));
         }
         let single = rounds == 1 && per_minute == 0.0;
-        if !single && !(per_minute > 0.0 && per_minute <= MOST_PER_MINUTE) {
+        let rated = per_minute > 0.0 && per_minute <= MOST_PER_MINUTE;
+        if !(single || rated) {
             return Err(Refused::new(format_args!(
                 "fire.per_minute: expected a rate above 0 up to {MOST_PER_MINUTE}, found {per_minute}"
             )));

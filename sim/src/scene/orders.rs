@@ -63,7 +63,7 @@ impl Scene {
         self.record = Some(Vec::new());
     }
 
-    /// The commands done since the record was started, in order; scheduled on a scene as this one was then, they give
+    /// The commands since the record was started, in order, also those that were due and refused; scheduled on a scene as this one was then, they give
     /// the same again.
     pub fn record(&self) -> &[Stamped] {
         self.record.as_deref().unwrap_or_default()
@@ -78,8 +78,12 @@ impl Scene {
     pub(super) fn obey(&mut self) {
         while self.pending.front().is_some_and(|stamped| stamped.step <= self.clock.step()) {
             let Some(Stamped { command, .. }) = self.pending.pop_front() else { return };
-            if let Err(why) = self.order(command) {
+            if let Err(why) = self.apply(&command) {
                 self.log.add(self.clock.time_s(), Happening::Refused { why: why.to_string() });
+            }
+            // Refused or not: a replay must refuse it again, as the event counts.
+            if let Some(record) = &mut self.record {
+                record.push(Stamped { step: self.clock.step(), command });
             }
         }
     }
