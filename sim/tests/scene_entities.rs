@@ -289,3 +289,21 @@ fn an_empty_scene_has_no_lists_and_lists_are_shared_until_something_changes() {
     assert!(Arc::ptr_eq(&a.targets, &b.targets), "a target that stands is not copied");
     assert!(Arc::ptr_eq(&Snapshot::interpolate(&a, &b, 0.3).targets, &b.targets));
 }
+
+#[test]
+fn the_thread_flies_entities_and_takes_orders() {
+    let thread = sim::SimThread::start(busy(), mountains()).unwrap();
+    let order = |command| assert!(thread.send(sim::run::Message::Order(Box::new(command))));
+    order(Command::Turbulence(f64::NAN));
+    order(fire(StableId(5), "rocket", Muzzle { direction: DVec3::Y, ..Muzzle::ahead(40.0) }, 1, 0.0));
+    // A thread that has no processor yet takes longer.
+    let patience = std::time::Instant::now();
+    while thread.last_two().1.projectiles.is_empty() && patience.elapsed().as_secs() < 10 {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let now = thread.now();
+    assert!(!now.projectiles.is_empty() && now.bodies.len() == 3 && now.targets.len() == 6);
+    let scene = thread.stop().unwrap();
+    // That of the start, or that of the scheduled command if the thread has come so far.
+    assert!([1.5, 4.0].contains(&scene.surroundings().turbulence_mps), "what is refused changes nothing");
+}
