@@ -3,7 +3,7 @@
 //! How a value is read and what it may be stands in [`crate::values`]. A flag that is not given is `None` where the
 //! quality preset or the world decides. Misuse is told by clap and ends with exit status 2.
 
-use crate::values::{self, Extent, Look, MapPoint, Overlay, Place, Quality, Size, Subject};
+use crate::values::{self, Extent, Look, MapPoint, Overlay, Place, Priced, Quality, Size, Subject};
 use clap::{Args, Parser, Subcommand};
 use sim::UtcTime;
 use std::path::PathBuf;
@@ -283,6 +283,9 @@ pub struct BenchArgs {
 /// `poligon trade`
 #[derive(Debug, Args)]
 pub struct TradeArgs {
+    /// Whose settings to measure.
+    #[arg(value_name = "SUBJECT", default_value = "all")]
+    pub subject: Priced,
     /// Fewer points and rounds; under 3 minutes.
     #[arg(long)]
     pub quick: bool,

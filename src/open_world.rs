@@ -32,10 +32,15 @@ pub fn open(path: Option<&Path>) -> Result<World, Failure> {
 /// The world that a case names, if it names one; `default` is the embedded one.
 ///
 /// # Errors
-/// [`Failure::Failed`] as [`open`].
+/// [`Failure::Misuse`] if what is named is no world; [`Failure::Failed`] if the embedded one cannot be baked.
 pub fn of_case(case: &Case) -> Result<Option<World>, Failure> {
-    let Some(path) = &case.run.world else { return Ok(None) };
-    open(Some(path.as_path()).filter(|path| *path != Path::new(DEFAULT_WORLD))).map(Some)
+    match &case.run.world {
+        None => Ok(None),
+        Some(path) if path == Path::new(DEFAULT_WORLD) => open(None).map(Some),
+        Some(path) => World::read(path)
+            .map(Some)
+            .map_err(|error| Failure::Misuse(format!("{}: run.world: {error}", case.file.display()))),
+    }
 }
 
 /// All that blocks are made from, with masks for the limits of `rings`.

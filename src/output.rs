@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::fmt::{self, Write as _};
+use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -52,18 +53,43 @@ pub fn print_text(text: &str) -> Result<(), Failure> {
 
 /// Writes a file beside its place and renames it into it, so that a reader finds a whole file or what was there before.
 ///
+/// A link is followed to the file it names. What is there and is no file (a pipe, a device) is written into as it is.
+///
 /// # Errors
 /// [`Failure::Failed`] if it cannot be written.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let failed = |error: io::Error| Failure::while_doing(format_args!("writing {}", path.display()), error);
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    let beside = PathBuf::from(beside);
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder).map_err(failed)?;
+    if fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir()) {
+        return fs::OpenOptions::new().write(true).open(path).and_then(|mut to| to.write_all(bytes)).map_err(failed);
     }
-    std::fs::write(&beside, bytes).map_err(failed)?;
-    std::fs::rename(&beside, path).map_err(failed)
+    let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if let Some(folder) = place.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        fs::create_dir_all(folder).map_err(failed)?;
+    }
+    let mut beside = place.as_os_str().to_owned();
+    beside.push(format!(".{}.part", std::process::id()));
+    let beside = PathBuf::from(beside);
+    let written = fs::OpenOptions::new().write(true).create_new(true).open(&beside);
+    let written = written.and_then(|mut to| to.write_all(bytes)).and_then(|()| fs::rename(&beside, &place));
+    written.map_err(|error| {
+        // What was begun is of no use to anyone.
+        let _ = fs::remove_file(&beside);
+        failed(error)
+    })
+}
+
+/// Refuses to write over a file that is read.
+///
+/// # Errors
+/// [`Failure::Misuse`] names the file.
+pub fn not_over(out: Option<&Path>, read: &[&Path]) -> Result<(), Failure> {
+    let Some(place) = out.and_then(|out| fs::canonicalize(out).ok()) else { return Ok(()) };
+    match read.iter().find(|read| fs::canonicalize(read).is_ok_and(|read| read == place)) {
+        Some(read) => {
+            Err(Failure::Misuse(format!("--out: expected another file than {}, which is read", read.display())))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Tells a person something on stderr. That no one can be told is no reason to stop.

@@ -579,6 +579,10 @@ pub struct Knob {
     pub cost_unit: String,
     /// From coarsest to finest.
     pub points: Vec<KnobPoint>,
+    /// The plot that it shares with other knobs, as one curve of several.
+    pub group: Option<String>,
+    /// The setting with the least error, where finer is not always better.
+    pub best: Option<f64>,
 }
 
 /// One value of a setting.
@@ -600,6 +604,12 @@ pub struct KnobPoint {
     pub image_rms_grey: Option<f64>,
     /// Time to make the world anew, where the knob needs it.
     pub bake_s: Option<f64>,
+    /// The value in words, where `setting` is only its place in a row of models.
+    pub label: Option<String>,
+    /// The part of `error` that is height.
+    pub error_height: Option<f64>,
+    /// The part of `error` that is not.
+    pub error_horizontal: Option<f64>,
 }
 
 impl FrameMs {
@@ -771,7 +781,9 @@ mod tests {
             names(&Trade { knobs: vec![knob], ..Trade::default() }),
             "knobs[].name knobs[].unit knobs[].error_unit knobs[].cost_unit knobs[].points[].setting \
              knobs[].points[].error knobs[].points[].cost knobs[].points[].triangles knobs[].points[].bytes \
-             knobs[].points[].error_max knobs[].points[].image_rms_grey knobs[].points[].bake_s conditions"
+             knobs[].points[].error_max knobs[].points[].image_rms_grey knobs[].points[].bake_s \
+             knobs[].points[].label knobs[].points[].error_height knobs[].points[].error_horizontal \
+             knobs[].group knobs[].best conditions"
         );
     }
 

@@ -103,7 +103,20 @@ pub enum Subject {
     Bake,
     /// Building blocks.
     Mesh,
+    /// Steps of aircraft and shells.
+    Flight,
     /// All of them.
+    All,
+}
+
+/// What `trade` measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Priced {
+    /// Settings of the picture.
+    Scene,
+    /// Integrators, precisions, and depths of physics.
+    Flight,
+    /// Both.
     All,
 }
 

@@ -108,7 +108,7 @@ fn misuse_ends_with_2_and_says_what_was_expected_and_found() {
     assert_refused(&["bake", "--dem", "a.tif", "--out", "c.world", "--step", "24"], 2, &["25..=400", "found `24`"]);
     assert_refused(&["shot", "--eye", "1,2,3", "--look", "0,0", "--out", "a.jpg"], 2, &[".png", "a.jpg"]);
     assert_refused(&["sight", "--from", "1,2,3"], 2, &["--to"]);
-    assert_refused(&["bench", "everything"], 2, &["ground", "frame", "bake", "mesh", "all"]);
+    assert_refused(&["bench", "everything"], 2, &["ground", "frame", "bake", "mesh", "flight", "all"]);
 }
 
 #[test]

@@ -1,5 +1,8 @@
 //! What ends a run or a shot: `ground`, or a column that reaches a value, as `altitude_m<0` or `range_m=1500`.
 
+/// A start this near to a limit is on it, and does not end there: a height of 0 over the ellipsoid is known to a nanometre.
+pub const ON_IT: f64 = 1e-6;
+
 /// On which side of the value it is over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Relation {
@@ -66,12 +69,12 @@ impl Relation {
         }
     }
 
-    /// Whether it is over at the start, a difference of `margin` aside.
-    pub fn at_start(self, difference: f64, margin: f64) -> bool {
+    /// Whether it is over at the start, by more than [`ON_IT`].
+    pub fn at_start(self, difference: f64) -> bool {
         match self {
             Self::Equal => false,
-            Self::Below => difference < -margin,
-            Self::Above => difference > margin,
+            Self::Below => difference < -ON_IT,
+            Self::Above => difference > ON_IT,
         }
     }
 }
@@ -105,10 +108,7 @@ mod tests {
             Relation::Equal.passed(-1.0, 2.0) && Relation::Equal.passed(1.0, 0.0) && !Relation::Equal.passed(0.0, 1.0)
         );
         assert!(Relation::Below.passed(1.0, -1.0) && !Relation::Below.passed(1.0, 0.0));
-        assert!(
-            Relation::Above.at_start(1.0, 0.1)
-                && !Relation::Above.at_start(0.05, 0.1)
-                && !Relation::Equal.at_start(0.0, 0.0)
-        );
+        assert!(Relation::Above.at_start(1.0) && !Relation::Above.at_start(1e-7) && !Relation::Equal.at_start(0.0));
+        assert!(Relation::Below.at_start(-1e-3) && !Relation::Below.at_start(-1e-9));
     }
 }

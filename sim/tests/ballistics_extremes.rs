@@ -108,6 +108,41 @@ fn shots_without_an_end_of_their_own_end() {
 }
 
 #[test]
+fn a_muzzle_on_the_ellipsoid_is_on_the_ground_only_to_rounding() {
+    // Latitudes and longitudes whose height of 0 or 100 m comes back from the frame a nanometre lower or higher.
+    for i in 0..60 {
+        let (lat, lon) = (-80.0 + 2.7 * f64::from(i), -175.0 + 5.9 * f64::from(i));
+        for frame in ["ellipsoid", "round"] {
+            for (altitude, elevation, more) in
+                [(0, 20, "[run]\nstop = ['ground']"), (0, 20, ""), (100, 0, ""), (100, 5, "")]
+            {
+                let case = format!(
+                    "[frame]\nkind = '{frame}'\n[initial]\nlat_deg = {lat}\nlon_deg = {lon}\naltitude_m = {altitude}\n{more}\n\
+                     [shot]\nspeed_mps = 200\nelevation_deg = {elevation}\nazimuth_deg = {}\n",
+                    5 * i
+                );
+                let ours = flown(SHELL, &case);
+                assert!(at_end(&ours, Column::Time) > 1.0, "{case}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_shot_shorter_than_its_step_still_goes_as_far_as_it_goes() {
+    // 2 v sin(e) / g of flight in a vacuum, whatever the step.
+    for dt in [1e-3, 0.1, 10.0] {
+        for (speed, elevation) in [(300.0, 0.05), (10.0, 0.05), (37.0, 80.0)] {
+            let case = format!("[run]\ndt_s = {dt}\n[shot]\nspeed_mps = {speed}\nelevation_deg = {elevation}");
+            let ours = flown(STONE, &case);
+            let expected = 2.0 * speed * f64::to_radians(elevation).sin() / G;
+            // RK4 is exact on a parabola; roundings of a time of 8 s.
+            assert!((at_end(&ours, Column::Time) - expected).abs() < 1e-12, "{case}: {}", at_end(&ours, Column::Time));
+        }
+    }
+}
+
+#[test]
 fn every_speed_height_and_step_gives_numbers() {
     for frame in ["flat", "round", "ellipsoid"] {
         for altitude in [-9_000.0, 0.0, 30_000.0, 80_000.0, 200_000.0] {

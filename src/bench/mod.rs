@@ -5,6 +5,7 @@
 
 pub mod bake;
 pub mod cameras;
+pub mod flight;
 pub mod frame;
 pub mod ground;
 pub mod mesh;

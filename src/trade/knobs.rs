@@ -155,6 +155,7 @@ impl Setting<'_> {
             error_unit: error_unit.into(),
             cost_unit: FRAME_MS.into(),
             points: points.collect(),
+            ..Knob::default()
         })
     }
 
@@ -192,6 +193,7 @@ impl Setting<'_> {
             error_unit: "m, root mean square of the ground against the source's samples, off lakes".into(),
             cost_unit: format!("{FRAME_MS}, {:.0} km of sight", post_step::RANGE_M * 1e-3),
             points,
+            ..Knob::default()
         })
     }
 }

@@ -4,6 +4,9 @@
 //! take turns at the same cameras, so their costs compare even on a busy machine. Errors are exact properties of what
 //! is drawn, not of the machine.
 
+mod axis;
+mod drawing;
+pub mod flight;
 mod knobs;
 mod plot;
 mod post_step;
@@ -12,7 +15,7 @@ mod surface;
 mod table;
 
 pub use knobs::measure;
-pub use plot::{one as plot, sheet};
+pub use plot::{all as plots, sheet};
 pub use table::csv;
 
 /// How much is measured.

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 /// The table.
 pub fn csv(trade: &Trade) -> String {
     let mut text = String::from(
-        "knob,unit,setting,error,error_unit,error_max,image_rms_grey,cost,cost_unit,triangles,bytes,bake_s\n",
+        "knob,unit,setting,error,error_unit,error_max,image_rms_grey,cost,cost_unit,triangles,bytes,bake_s,label,error_height,error_horizontal\n",
     );
     let optional = |value: Option<f64>| value.filter(|v| v.is_finite()).map_or(String::new(), |v| v.to_string());
     let whole = |value: Option<u64>| value.map_or(String::new(), |v| v.to_string());
@@ -15,7 +15,7 @@ pub fn csv(trade: &Trade) -> String {
             // Writing to a String cannot fail.
             let _ = writeln!(
                 text,
-                "{},{},{},{},{},{},{},{},{},{},{},{}",
+                "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
                 quoted(&knob.name),
                 quoted(&knob.unit),
                 point.setting,
@@ -28,6 +28,9 @@ pub fn csv(trade: &Trade) -> String {
                 whole(point.triangles),
                 whole(point.bytes),
                 optional(point.bake_s),
+                quoted(point.label.as_deref().unwrap_or("")),
+                optional(point.error_height),
+                optional(point.error_horizontal),
             );
         }
     }
@@ -50,7 +53,7 @@ mod tests {
         let knob = Knob { name: "a".into(), error_unit: "m, \"rms\"".into(), points, ..Knob::default() };
         let text = csv(&Trade { knobs: vec![knob], ..Trade::default() });
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines[1], "a,,0.25,,\"m, \"\"rms\"\"\",,,1.5,,,,");
+        assert_eq!(lines[1], "a,,0.25,,\"m, \"\"rms\"\"\",,,1.5,,,,,,,");
         // One comma is within quotes.
         assert_eq!(lines[0].matches(',').count(), lines[1].matches(',').count() - 1);
     }

@@ -1,13 +1,14 @@
 //! `poligon bench`: speed beside a yardstick in the same run.
 
 use crate::args::BenchArgs;
-use crate::bench::{bake, frame, ground, mesh};
+use crate::bench::{bake, flight, frame, ground, mesh};
 use crate::failure::Failure;
 use crate::open_world;
 use crate::output::{self, Output};
 use crate::report;
 use crate::values::Subject;
 use std::sync::Arc;
+use terrain::Ground;
 
 /// Rounds of baking: each takes half a minute of three bakes.
 const BAKES: u32 = 7;
@@ -23,6 +24,12 @@ pub fn run(args: &BenchArgs, output: Output) -> Result<(), Failure> {
     if wanted(Subject::Ground) {
         tell_subject("ground queries");
         report.results.extend(ground::bench(&world.field, ground::Load::FULL)?);
+    }
+    if wanted(Subject::Flight) {
+        tell_subject("steps of what flies");
+        let flown = flight::bench(&Ground::new(world.field.clone()).whole(), flight::Load::FULL)?;
+        report.results.extend(flown.results);
+        report.skipped.extend(flown.skipped);
     }
     if wanted(Subject::Mesh) {
         tell_subject("building blocks");

@@ -13,12 +13,16 @@ use sim::rigid::stop::Stop;
 use sim::rigid::{Inputs, Model, Simulation};
 use sim::world_ground::WorldGround;
 use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 
 /// Runs the verb.
 ///
 /// # Errors
 /// [`Failure::Misuse`] if a file cannot be used, [`Failure::Failed`] if the flight fails or its rows cannot be written.
 pub fn run(args: &SimulateArgs, output: Output) -> Result<(), Failure> {
+    let read = [Some(&args.model), Some(&args.case), args.inputs.as_ref()];
+    let read: Vec<&Path> = read.into_iter().flatten().map(PathBuf::as_path).collect();
+    output::not_over(args.out.as_deref(), &read)?;
     let unusable = |error: FileError| Failure::Misuse(error.to_string());
     let model = Model::read(&args.model).map_err(unusable)?;
     let case = Case::read(&args.case).map_err(unusable)?;
@@ -74,20 +78,15 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), Failure> {
         None if output == Output::Table => output::print_text(&text)?,
         None => {}
     }
-    let end_agl_m = last.get(AGL).copied().unwrap_or(0.0);
-    if case.run.world.is_some() && end_agl_m.is_nan() {
+    if case.run.world.is_some() && last.get(AGL).is_some_and(|agl_m| agl_m.is_nan()) {
         output::tell(format_args!("poligon: the flight left the ground that the world has"));
-    } else if end_agl_m < -0.01 && start_agl_m >= 0.0 {
-        output::tell(format_args!(
-            "poligon: the flight went on under the ground; run.stop = [\"ground\"] ends it there"
-        ));
     }
     let fastest = flight.stiffness;
     let limit = case.run.integrator.damping_limit();
     if flight.most_pieces > 1 {
         output::tell(format_args!(
-            "poligon: the body's fastest mode is {:.3} 1/s at {:.1} m/s; steps of {dt_s} s were taken in up to {} pieces",
-            fastest.lambda_radps, fastest.speed_mps, flight.most_pieces
+            "poligon: steps of {dt_s} s were taken in up to {} pieces, for the body's fastest mode or its spin",
+            flight.most_pieces
         ));
     }
     if output == Output::Json || args.out.is_some() {

@@ -1,16 +1,20 @@
 //! `poligon trade`: accuracy against cost of every setting, as a report and, with `--out`, as files: `trade.csv`,
-//! `trade.json`, a plot a knob and `all.svg`.
+//! `trade.json`, and plots as SVG and PNG: one a knob, one for each group of curves, and all on one sheet.
 
 use crate::args::TradeArgs;
 use crate::failure::Failure;
 use crate::open_world;
 use crate::output::{self, Output};
 use crate::report::{Knob, KnobPoint, Trade};
-use crate::trade::{self, Effort};
+use crate::trade::{self, Effort, flight};
+use crate::values::Priced;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
+
+/// A plot of 640 x 360 units becomes a picture of 1280 x 720.
+const PIXELS_A_UNIT: f64 = 2.0;
 
 /// Runs the verb.
 ///
@@ -21,12 +25,22 @@ pub fn run(args: &TradeArgs, output: Output) -> Result<(), Failure> {
         // Before minutes of work, not after.
         fs::create_dir_all(folder).map_err(|error| Failure::while_doing(folder.display(), error))?;
     }
-    let world = Arc::new(open_world::open(None)?);
-    let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
-    let request = terrain::bake::default_request();
-    let trade = trade::measure(&world, &request, &effort, &mut |what| {
-        output::tell(format_args!("poligon: measuring {what}"));
-    })?;
+    let mut tell = |what: &str| output::tell(format_args!("poligon: measuring {what}"));
+    let (mut knobs, mut conditions) = (Vec::new(), Vec::new());
+    if args.subject != Priced::Flight {
+        let world = Arc::new(open_world::open(None)?);
+        let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
+        let scene = trade::measure(&world, &terrain::bake::default_request(), &effort, &mut tell)?;
+        knobs.extend(scene.knobs);
+        conditions.push(scene.conditions);
+    }
+    if args.subject != Priced::Scene {
+        let effort = if args.quick { flight::Effort::QUICK } else { flight::Effort::FULL };
+        let flown = flight::measure(effort, &mut tell)?;
+        knobs.extend(flown.knobs);
+        conditions.push(flown.conditions);
+    }
+    let trade = Trade { knobs, conditions: conditions.join("; ") };
     if let Some(folder) = &args.out {
         write(folder, &trade)?;
     }
@@ -38,12 +52,13 @@ pub fn run(args: &TradeArgs, output: Output) -> Result<(), Failure> {
 
 /// The report with a line a value, for a person.
 fn table(trade: &Trade) -> Value {
-    let unit = |knob: &Knob| json!({"knob": knob.name, "setting": knob.unit, "error": knob.error_unit, "cost": knob.cost_unit});
+    let unit = |knob: &Knob| json!({"knob": knob.name, "setting": knob.unit, "error": knob.error_unit, "cost": knob.cost_unit, "best": knob.best});
     let line = |knob: &Knob, point: &KnobPoint| {
         json!({
             "knob": knob.name, "setting": point.setting, "error": point.error, "error_max": point.error_max,
             "image_rms_grey": point.image_rms_grey, "cost": point.cost, "triangles": point.triangles,
-            "bytes": point.bytes, "bake_s": point.bake_s,
+            "bytes": point.bytes, "bake_s": point.bake_s, "label": point.label, "error_height": point.error_height,
+            "error_horizontal": point.error_horizontal,
         })
     };
     let lines = trade.knobs.iter().flat_map(|knob| knob.points.iter().map(move |point| line(knob, point)));
@@ -61,10 +76,13 @@ fn write(folder: &Path, trade: &Trade) -> Result<(), Failure> {
     };
     put("trade.csv".into(), trade::csv(trade))?;
     put("trade.json".into(), format!("{}\n", output::to_value(trade)?))?;
-    for knob in &trade.knobs {
-        put(format!("{}.svg", knob.name.replace(' ', "_")), trade::plot(knob))?;
+    for (name, plot) in trade::plots(&trade.knobs).into_iter().chain([("all".into(), trade::sheet(&trade.knobs))]) {
+        put(format!("{name}.svg"), plot.svg())?;
+        let picture = plot.picture(PIXELS_A_UNIT);
+        let path = folder.join(format!("{name}.png"));
+        picture.write_png(&path).map_err(|error| Failure::Failed(error.to_string()))?;
     }
-    put("all.svg".into(), trade::sheet(&trade.knobs))
+    Ok(())
 }
 
 #[cfg(test)]
@@ -83,7 +101,7 @@ mod tests {
         let mut names: Vec<_> =
             fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
-        assert_eq!(names, ["all.svg", "post_step.svg", "trade.csv", "trade.json"]);
+        assert_eq!(names, ["all.png", "all.svg", "post_step.png", "post_step.svg", "trade.csv", "trade.json"]);
         fs::remove_dir_all(&folder).unwrap();
         assert!(write(Path::new("/dev/null/none"), &trade).is_err());
     }

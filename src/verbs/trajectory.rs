@@ -22,6 +22,7 @@ use std::path::Path;
 /// # Errors
 /// [`Failure::Misuse`] names the file and the key that cannot be used; [`Failure::Failed`] says what stopped the flight.
 pub fn run(args: &TrajectoryArgs, output: Output) -> Result<(), Failure> {
+    output::not_over(args.out.as_deref(), &[&args.projectile, &args.case])?;
     let misuse = |error: FileError| Failure::Misuse(error.to_string());
     let projectile = Projectile::read(&args.projectile).map_err(misuse)?;
     let case = Case::read(&args.case).map_err(misuse)?;

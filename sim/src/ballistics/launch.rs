@@ -119,6 +119,11 @@ impl Launch {
         })
     }
 
+    /// Whether it leaves upward. As asked for, not as rounded: over the ellipsoid a level shot may climb by a nanometre.
+    pub fn climbs(&self) -> bool {
+        self.elevation_rad > 0.0 && self.velocity_mps != DVec3::ZERO
+    }
+
     /// Unit direction of the bore in the planet's frame.
     pub fn bore(&self) -> DVec3 {
         self.axes * DVec3::new(self.elevation_rad.cos(), self.elevation_rad.sin(), 0.0)

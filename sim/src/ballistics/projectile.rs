@@ -150,6 +150,9 @@ impl ProjectileFile {
                 return Err("diameter_m: expected a number with spin, found none".to_owned());
             }
         }
+        if self.burn.len() == 1 {
+            return Err("burn: expected two rows or more, thrust is linear between them; found one".to_owned());
+        }
         for (i, &[_, newton]) in self.burn.iter().enumerate() {
             if newton.abs() > 1e9 {
                 return Err(format!("burn[{i}]: expected a thrust within 1e9 N, found {newton}"));

@@ -20,7 +20,7 @@ use super::projectile::Projectile;
 use crate::case::{Case, MOST_STEPS};
 use crate::file::FileError;
 use crate::integrate::Before;
-use crate::limit::Relation;
+use crate::limit::ON_IT;
 use crate::world_ground::WorldGround;
 use std::fmt;
 
@@ -171,9 +171,12 @@ impl<'a> Flight<'a> {
         for (i, stop) in case.run.stop.iter().enumerate() {
             ends.push(End::parse(stop).map_err(|why| fail(format!("run.stop[{i}]: {why}")))?);
         }
-        if ends.is_empty() && case.run.seconds.is_none() {
-            let climbs = observer.climb_mps(&observer.seen(0.0, &start)) > 0.0;
-            ends.push(if climbs && ground.is_none() { End::Return } else { End::Ground });
+        if ground.is_some() && !ends.contains(&End::Ground) {
+            // A world that is named is there.
+            ends.push(End::Ground);
+        } else if ends.is_empty() && case.run.seconds.is_none() {
+            let climbs = observer.launch.climbs();
+            ends.push(if climbs { End::Return } else { End::Ground });
         }
         let shot = case.shot.as_ref();
         let every = match (shot.and_then(|shot| shot.step_m), shot.and_then(|shot| shot.step_s), case.run.output_dt_s) {
@@ -252,11 +255,11 @@ impl<'a> Flight<'a> {
             }
             End::Ground => {
                 let altitude_m = self.observer.altitude_m(&seen);
-                altitude_m < 0.0 || (altitude_m == 0.0 && self.observer.climb_mps(&seen) <= 0.0)
+                altitude_m < -ON_IT || (altitude_m <= ON_IT && !self.observer.launch.climbs())
             }
             End::Column(limit) => {
                 let beyond = self.observer.beyond(limit, &self.motion, 0.0, &seen);
-                limit.relation != Relation::Equal && limit.passed(beyond, beyond)
+                limit.relation.at_start(beyond)
             }
         };
         self.ends.iter().find(over).map(|end| end.event().to_owned())
@@ -315,11 +318,30 @@ impl<'a> Flight<'a> {
     /// Secants within a bracket, the stale end halved (Illinois): to the rounding of the time.
     fn crossing(&self, step: &Step, values: [f64; 2], number: impl Fn(f64, &State) -> f64) -> Result<f64, StepError> {
         let [at_start, at_end] = values;
-        if at_start * at_end > 0.0 || at_start == 0.0 {
-            return Ok(0.0);
+        let value_at = |cut_s: f64| {
+            let seen = self.observer.seen(step.from_s + cut_s, &self.at(step, cut_s)?);
+            Ok(number(step.from_s + cut_s, &seen))
+        };
+        let (mut start_s, mut at_start) = (0.0, at_start);
+        if at_end == 0.0 {
+            return Ok(step.length_s);
+        }
+        if at_start * at_end >= 0.0 {
+            // A shot that rises from its limit and is back within the step: where it is on the other side.
+            let other = (1..60).map(|halvings| step.length_s * 0.5f64.powi(halvings));
+            let mut found = None;
+            for cut_s in other {
+                let value = value_at(cut_s)?;
+                if value * at_end < 0.0 {
+                    found = Some((cut_s, value));
+                    break;
+                }
+            }
+            let Some(other) = found else { return Ok(0.0) };
+            (start_s, at_start) = other;
         }
         // The newest point and the one across the zero.
-        let (mut across, mut at_across, mut newest, mut at_newest) = (0.0, at_start, step.length_s, at_end);
+        let (mut across, mut at_across, mut newest, mut at_newest) = (start_s, at_start, step.length_s, at_end);
         for _ in 0..80 {
             let rounding_s = f64::EPSILON * (step.from_s + newest);
             if at_newest == 0.0 || (newest - across).abs() <= rounding_s {
@@ -330,8 +352,7 @@ impl<'a> Flight<'a> {
             if (cut_s - newest).abs() <= 0.25 * rounding_s {
                 break;
             }
-            let seen = self.observer.seen(step.from_s + cut_s, &self.at(step, cut_s)?);
-            let value = number(step.from_s + cut_s, &seen);
+            let value = value_at(cut_s)?;
             if value * at_newest < 0.0 {
                 (across, at_across) = (newest, at_newest);
             } else {

@@ -54,7 +54,7 @@ pub enum Axes {
     Wind,
     /// Turned by the angle of attack alone.
     Stability,
-    /// Of the body; there is CY only.
+    /// CY along the body's; drag and lift, which only DAVE-ML files then give, along the wind's.
     Body,
 }
 
@@ -175,20 +175,24 @@ impl Flow {
         Self { cos_alpha, sin_alpha, cos_beta, sin_beta }
     }
 
+    /// Drag, side force and lift along the wind's axes, in the body's.
+    #[inline]
+    fn in_wind(&self, drag: f64, side: f64, lift: f64) -> DVec3 {
+        let Self { cos_alpha: ca, sin_alpha: sa, cos_beta: cb, sin_beta: sb } = *self;
+        // Drag and side force in the body's plane of symmetry, before the angle of attack turns them.
+        let (ahead, across) = (-drag * cb - side * sb, side * cb - drag * sb);
+        DVec3::new(ahead * ca + lift * sa, across, ahead * sa - lift * ca)
+    }
+
     /// The force in body axes, over dynamic pressure and area.
     #[inline]
     pub fn force(&self, axes: Axes, c: &[f64; COEFFICIENTS]) -> DVec3 {
         let [drag, side, lift, x, z, _, _, _, y] = *c;
         let (ca, sa) = (self.cos_alpha, self.sin_alpha);
         let along = match axes {
-            Axes::Body => DVec3::new(0.0, side, 0.0),
+            Axes::Body => self.in_wind(drag, 0.0, lift) + DVec3::new(0.0, side, 0.0),
             Axes::Stability => DVec3::new(lift * sa - drag * ca, side, -drag * sa - lift * ca),
-            Axes::Wind => {
-                let (cb, sb) = (self.cos_beta, self.sin_beta);
-                // Drag and side force in the body's plane of symmetry, before the angle of attack turns them.
-                let (ahead, across) = (-drag * cb - side * sb, side * cb - drag * sb);
-                DVec3::new(ahead * ca + lift * sa, across, ahead * sa - lift * ca)
-            }
+            Axes::Wind => self.in_wind(drag, side, lift),
         };
         along + DVec3::new(x, y, z)
     }

@@ -310,12 +310,17 @@ impl Model {
     }
 }
 
+/// Whether a term or a thrust asks for a table.
+fn is_asked(file: &ModelFile, name: &String) -> bool {
+    let asked = |of: &Option<String>| of.as_ref() == Some(name);
+    file.aero.term.iter().any(|term| asked(&term.table)) || file.thrust.iter().any(|thrust| asked(&thrust.table))
+}
+
 /// Tables that nothing asks for, and angles in radians that are more than a turn.
 fn notes(file: &ModelFile) -> Vec<String> {
     let mut notes = Vec::new();
     for (name, table) in &file.table {
-        let asked = |of: &Option<String>| of.as_ref() == Some(name);
-        if !file.aero.term.iter().any(|term| asked(&term.table)) && !file.thrust.iter().any(|t| asked(&t.table)) {
+        if !is_asked(file, name) {
             notes.push(format!("table.{name}: no term and no thrust asks for it"));
         }
         for (axis, breakpoints) in table.axes.iter().zip(&table.breakpoints) {
@@ -449,7 +454,7 @@ fn bound_tables(file: &ModelFile, controls: &[Control]) -> Result<(Tables, Vec<S
             table: built.map_err(|error| format!("{key}: {error}"))?,
             slots: slots(&format!("{key}.axes"), &table.axes, controls)?,
             arguments: table.axes.clone(),
-            refuse_outside: table.outside == OutsideFile::Error,
+            refuse_outside: table.outside == OutsideFile::Error && is_asked(file, name),
         });
     }
     let names = all.iter().map(|bound| bound.name.clone()).collect();

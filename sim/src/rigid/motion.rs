@@ -101,6 +101,14 @@ pub fn state(position: DVec3, attitude: DQuat, cross_track_m: f64, velocity: DVe
     [x, y, z, q.w, q.x, q.y, q.z, cross_track_m, vx, vy, vz, p, qr, r]
 }
 
+/// Fastest flight, m/s, and fastest turn, rad/s: beyond them a state has run away.
+const FASTEST: (f64, f64) = (1e6, 1e5);
+
+/// Whether a state is one that a body can have: finite, and not run away.
+pub fn is_flight(y: &State) -> bool {
+    y.iter().all(|x| x.is_finite()) && velocity(y).length() <= FASTEST.0 && rates(y).length() <= FASTEST.1
+}
+
 /// Components of velocity (m/s) and rates (rad/s) below this are rest: what only decays would end in denormal numbers,
 /// which are slow, and no output shows thirty digits.
 const REST: f64 = 1e-30;
@@ -149,8 +157,11 @@ impl RigidMotion {
         let course = model.course();
         let angles = uses(Quantity::RollRad) || uses(Quantity::PitchRad) || uses(Quantity::YawRad);
         let local = angles || course != Course::None || uses(Quantity::LatRad) || uses(Quantity::LonRad);
-        let place = if local || !self.still || uses(Quantity::AltitudeM) || self.atmosphere.depends_on_height() {
+        // Latitude and longitude cost a cosine or an arc tangent; mostly the height alone is asked.
+        let place = if local || !(self.still || self.flat()) {
             self.planet.place(position(y))
+        } else if !self.still || uses(Quantity::AltitudeM) || self.atmosphere.depends_on_height() {
+            Place { altitude_m: self.planet.altitude_m(position(y)), ..Place::default() }
         } else {
             Place::default()
         };

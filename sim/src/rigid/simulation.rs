@@ -13,7 +13,7 @@ use super::model::Model;
 use super::motion::{self, N, RigidMotion, State};
 use super::quantity::{Quantity, without_unit};
 use super::start;
-use super::stiffness::{MOST_PIECES, Stiffness};
+use super::stiffness::{self, MOST_PIECES, Mode, STEPS_A_MODE, Stiffness};
 use super::stop::Stop;
 use super::trim::{self, Trimmed};
 use crate::case::{Case, Setting};
@@ -26,8 +26,6 @@ use std::sync::Arc;
 
 /// Times nearer to each other than this are one, seconds.
 const SAME_S: f64 = 1e-9;
-/// A start this near to a stop does not stop: a height of 0 over the ellipsoid is known to a nanometre only.
-const ON_IT: f64 = 1e-6;
 /// Steps between two looks at how stiff the flow makes the body.
 const STEPS_A_LOOK: u32 = 16;
 
@@ -65,7 +63,9 @@ pub struct Simulation {
     t_s: f64,
     y: State,
     before: Before<f64, N>,
+    mode: Mode,
     pieces: u32,
+    looks: u32,
     look_in: u32,
 }
 
@@ -107,7 +107,9 @@ impl Simulation {
             t_s: 0.0,
             y,
             before: None,
+            mode: Mode::default(),
             pieces: 1,
+            looks: 0,
             look_in: 0,
         };
         if let Some(wanted) = &case.trim {
@@ -196,6 +198,8 @@ impl Simulation {
                 // A jump of a control breaks the history that some integrators keep.
                 if self.motion.controls[place] != value {
                     self.before = None;
+                    // It may change the fastest mode too.
+                    (self.looks, self.look_in) = (0, 0);
                 }
                 self.motion.controls[place] = value;
             }
@@ -203,15 +207,20 @@ impl Simulation {
         }
     }
 
-    /// How many pieces the flow of now asks for.
+    /// How many pieces the state of now asks for.
     fn look(&mut self) -> Result<(), String> {
         let sample = self.motion.sample(&self.y, false);
         let (density, airspeed) = (sample.air.density_kgpm3, sample.slots[Quantity::TasMps.slot()]);
-        let pieces = self.stiffness.pieces(self.integrator, density, airspeed, self.dt_s);
-        self.pieces = pieces.ok_or_else(|| {
-            let lambda = self.stiffness.per_flow * density * airspeed;
+        let flow = density * airspeed;
+        if self.looks.is_multiple_of(STEPS_A_MODE / STEPS_A_LOOK) {
+            self.mode = Mode::of(&self.motion, &self.y, flow, airspeed);
+        }
+        self.looks = self.looks.wrapping_add(1);
+        let lambda = self.mode.lambda_radps(&self.stiffness, flow);
+        let spin = motion::rates(&self.y).length();
+        self.pieces = stiffness::pieces(self.integrator, lambda, spin, self.dt_s).ok_or_else(|| {
             format!(
-                "run.dt_s: expected a step that holds the body's fastest mode, {lambda:.3e} 1/s at {airspeed:.1} m/s, in at most {MOST_PIECES} pieces; found {} s",
+                "run.dt_s: expected a step that holds the body's fastest mode, {lambda:.3e} 1/s at {airspeed:.1} m/s, and its spin, {spin:.3e} rad/s, in at most {MOST_PIECES} pieces; found {} s",
                 self.dt_s
             )
         })?;
@@ -247,9 +256,12 @@ impl Simulation {
     }
 
     /// What a step ends with: the gust of the next one, and inputs up to now.
-    fn settle(&mut self, step_s: f64) {
-        if let Some(gust) = &mut self.gust {
-            gust.step(step_s, self.motion.sample(&self.y, false).slots[Quantity::TasMps.slot()]);
+    fn settle(&mut self) {
+        // Gusts change on the grid only, so that an input edge between draws no other air.
+        let steps = self.t_s / self.dt_s;
+        let on_grid = (steps - steps.round()).abs() * self.dt_s <= SAME_S;
+        if let Some(gust) = self.gust.as_mut().filter(|_| on_grid) {
+            gust.step(self.dt_s, self.motion.sample(&self.y, false).slots[Quantity::TasMps.slot()]);
             self.motion.gust_mps = gust.gust_mps();
         }
         self.apply_edges();
@@ -271,9 +283,8 @@ impl Simulation {
             self.pieces = MOST_PIECES;
         }
         self.look_in = self.look_in.saturating_sub(1);
-        let step_s = until_s - self.t_s;
         self.advance(until_s);
-        self.settle(step_s);
+        self.settle();
     }
 
     /// Flies for `seconds`, and gives a row each `row_s` and at the start and end, with what happened there.
@@ -281,11 +292,14 @@ impl Simulation {
         let end_s = self.t_s + seconds;
         let first_s = self.t_s;
         let mut rows = 1.0;
-        emit(&self.row(), "start");
-        if let Some(stop) =
-            stops.iter().find(|stop| stop.limit.relation.at_start(self.beyond(stop, self.t_s, &self.y), ON_IT))
-        {
+        let over = stops.iter().find(|stop| stop.limit.relation.at_start(self.beyond(stop, self.t_s, &self.y)));
+        if let Some(stop) = over {
+            emit(&self.row(), &format!("stop: {}", stop.limit.text));
             return Ending::Stop(stop.limit.text.clone());
+        }
+        emit(&self.row(), "start");
+        if seconds <= SAME_S {
+            return Ending::Time;
         }
         while self.t_s < end_s - SAME_S {
             if (self.look_in == 0 || self.motion.model.refuses())
@@ -298,28 +312,28 @@ impl Simulation {
             let until_s = self.step_end(end_s);
             let good = self.clone_at();
             self.advance(until_s);
-            let finite = self.y.iter().all(|x| x.is_finite());
+            let finite = motion::is_flight(&self.y);
             let stop = if finite { self.first_stop(&good, stops) } else { None };
             let over_s = stop.map_or(until_s, |(ahead_s, _)| good.0 + ahead_s);
             while first_s + rows * row_s < over_s - SAME_S {
                 let t_s = first_s + rows * row_s;
                 rows += 1.0;
                 let y = self.glimpse_from(good.0, &good.1, t_s - good.0);
-                if y.iter().all(|x| x.is_finite()) {
+                if motion::is_flight(&y) {
                     emit(&self.row_of(t_s, &y), "");
                 }
             }
             if !finite {
                 self.restore(good);
                 emit(&self.row(), "failed");
-                return Ending::Failed(format!("after {} s a number of the state is no longer finite", self.t_s));
+                return Ending::Failed(format!("after {} s the state runs away", self.t_s));
             }
             if let Some((ahead_s, stop)) = stop {
                 (self.y, self.t_s) = (self.glimpse_from(good.0, &good.1, ahead_s), over_s);
                 emit(&self.row(), &format!("stop: {}", stop.limit.text));
                 return Ending::Stop(stop.limit.text.clone());
             }
-            self.settle(until_s - good.0);
+            self.settle();
             if self.t_s < end_s - SAME_S && (first_s + rows * row_s - self.t_s).abs() <= SAME_S {
                 rows += 1.0;
                 emit(&self.row(), "");
@@ -341,7 +355,7 @@ impl Simulation {
     fn beyond(&self, stop: &Stop, t_s: f64, y: &State) -> f64 {
         let place = stop.limit.column;
         let value = match (place, COLUMNS.get(place)) {
-            (column::AGL, _) => self.ground_m(y).map_or(f64::INFINITY, |ground| self.place(y).altitude_m - ground),
+            (column::AGL, _) => self.ground_m(y).map_or(f64::NAN, |ground| self.place(y).altitude_m - ground),
             (_, Some(&"altitude_m")) => self.motion.planet.altitude_m(motion::position(y)),
             _ => self.row_of(t_s, y)[place],
         };

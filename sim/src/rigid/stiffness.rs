@@ -1,10 +1,13 @@
-//! How short a step must be: the fastest mode of a body in the air, against what an integrator holds.
+//! How short a step must be: the fastest mode of a body, and its spin, against what an integrator holds.
 //!
-//! At load the accelerations are differentiated by the body's velocity and rates (6 x 6, differences over a twentieth of
-//! the speed; of the two sides the flatter one, so that the jump of the angle of attack at +-180 degrees is no mode) at
-//! the initial attitude to the air, at the never-exceed speed or the initial one, whichever is greater; the greatest size
-//! of its eigenvalues comes from a high power of the matrix (Gelfand's formula). Aerodynamic modes scale with density
-//! times speed, so one number serves the whole flight: lambda = `per_flow` x density x speed.
+//! The accelerations are differentiated by the body's velocity and rates (6 x 6, differences over a twentieth of the speed;
+//! of the two sides the flatter one, so that the jump of the angle of attack at +-180 degrees is no mode). The greatest
+//! size of an eigenvalue comes from a high power of the matrix (Gelfand's formula). This is done at load at the
+//! never-exceed speed or the initial one, whichever is greater, for the report; and in flight at the state, every
+//! [`STEPS_A_MODE`] steps. In between the mode grows with density times speed, as aerodynamic modes do.
+//!
+//! Spin is no mode: a quaternion is turned by so many radians a step, and the error of fourth order grows with them. A
+//! piece of a step turns the body by at most [`MOST_TURN_RAD`].
 //!
 //! Source: I. Gelfand, Normierte Ringe, 1941 (spectral radius); stability limits: see [`crate::integrate`].
 
@@ -16,6 +19,10 @@ use glam::DVec3;
 const SHARE: f64 = 0.7;
 /// Most pieces that a step is cut into.
 pub const MOST_PIECES: u32 = 1_000;
+/// Steps between two computations of the mode in flight.
+pub const STEPS_A_MODE: u32 = 256;
+/// Most turn of a piece of a step: at it rk4 errs by 2e-6 of the angle turned.
+const MOST_TURN_RAD: f64 = 0.25;
 
 /// The fastest mode of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,28 +36,46 @@ pub struct Stiffness {
 }
 
 impl Stiffness {
-    /// Of a body at a state.
+    /// Of a body at a state, but at the never-exceed speed if that is greater.
     pub fn of(motion: &RigidMotion, y: &State) -> Self {
         let sample = motion.sample(y, true);
         let airspeed = sample.through_air.length();
         let speed_mps = airspeed.max(motion.model.never_exceed_mps.unwrap_or(0.0)).max(10.0);
         let along = if airspeed > 1.0 { sample.through_air / airspeed } else { DVec3::X };
         // The same attitude to the air at the greater speed.
-        let frame_from_body = sample.frame_from_body;
-        let velocity = motion::velocity(y) + frame_from_body * (along * speed_mps - sample.through_air);
+        let velocity = motion::velocity(y) + sample.frame_from_body * (along * speed_mps - sample.through_air);
         let mut base = *y;
         (base[8], base[9], base[10]) = (velocity.x, velocity.y, velocity.z);
         let lambda_radps = spectral_radius(&jacobian(motion, &base, speed_mps));
         let flow = sample.air.density_kgpm3 * speed_mps;
         Self { speed_mps, lambda_radps, per_flow: if flow > 0.0 { lambda_radps / flow } else { 0.0 } }
     }
+}
 
-    /// Pieces that a step is cut into so that every mode is held; `None` if that takes more than [`MOST_PIECES`].
-    pub fn pieces(&self, integrator: Integrator, density_kgpm3: f64, airspeed_mps: f64, dt_s: f64) -> Option<u32> {
-        let size = self.per_flow * density_kgpm3 * airspeed_mps * dt_s / (SHARE * integrator.damping_limit());
-        let pieces = size.ceil().max(1.0);
-        (pieces <= f64::from(MOST_PIECES)).then_some(pieces as u32)
+/// The mode of a state in flight, and how it grows until it is taken anew.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Mode {
+    pub(crate) lambda_radps: f64,
+    pub(crate) flow: f64,
+}
+
+impl Mode {
+    /// Of a state in a flow (density times speed).
+    pub fn of(motion: &RigidMotion, y: &State, flow: f64, airspeed_mps: f64) -> Self {
+        Self { lambda_radps: spectral_radius(&jacobian(motion, y, airspeed_mps.max(1.0))), flow }
     }
+
+    /// Size of the mode in a flow, 1/s: what it was, and what more flow adds by the body's stiffness.
+    pub fn lambda_radps(&self, stiffness: &Stiffness, flow: f64) -> f64 {
+        self.lambda_radps + stiffness.per_flow * (flow - self.flow).max(0.0)
+    }
+}
+
+/// Pieces that a step is cut into so that a mode and a spin are held; `None` if that takes more than [`MOST_PIECES`].
+pub fn pieces(integrator: Integrator, lambda_radps: f64, spin_radps: f64, dt_s: f64) -> Option<u32> {
+    let mode = lambda_radps * dt_s / (SHARE * integrator.damping_limit());
+    let pieces = mode.max(spin_radps * dt_s / MOST_TURN_RAD).ceil().max(1.0);
+    (pieces <= f64::from(MOST_PIECES)).then_some(pieces as u32)
 }
 
 /// Derivative of the accelerations by velocity and rates; lengths are scaled by the body's so that all units are 1/s.

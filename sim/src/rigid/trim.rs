@@ -59,6 +59,9 @@ pub fn trim(motion: &mut RigidMotion, initial: &Initial, wanted: &Trim) -> Resul
         let found = wanted.vary.len();
         return Err(format!("trim.vary: expected 1 to {} names, found {found}", RESIDUALS.len()));
     }
+    if let Some(twice) = (1..wanted.vary.len()).find(|&i| wanted.vary[..i].contains(&wanted.vary[i])) {
+        return Err(format!("trim.vary: expected each name once, found {} again", wanted.vary[twice]));
+    }
     let meant = wanted.vary.iter().map(|name| unknown(&model, name)).collect::<Result<Vec<_>, _>>()?;
     let (unknowns, units): (Vec<Unknown>, Vec<f64>) = meant.into_iter().unzip();
     let mut angles = match initial.attitude {

@@ -20,7 +20,8 @@ use crate::integrate::{self, Integrator};
 use crate::rigid::Model;
 use crate::rigid::motion::{self, RigidMotion, State};
 use crate::rigid::quantity::Quantity;
-use crate::rigid::stiffness::Stiffness;
+use crate::rigid::stiffness::{self, MOST_PIECES, Mode, STEPS_A_MODE, Stiffness};
+use crate::snapshot::StableId;
 use crate::turbulence::Dryden;
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
@@ -77,11 +78,14 @@ pub(super) struct Body {
     pub ended: Option<EndReason>,
     pub jumps: u32,
     stiffness: Stiffness,
+    mode: Mode,
+    looks: u32,
     pieces: u32,
     look_in: u32,
 }
 coded!(Stiffness { speed_mps, lambda_radps, per_flow });
-coded!(Body { model, state, controls, tanks, failures, gust, ended, jumps, stiffness, pieces, look_in });
+coded!(Mode { lambda_radps, flow });
+coded!(Body { model, state, controls, tanks, failures, gust, ended, jumps, stiffness, mode, looks, pieces, look_in });
 
 /// What a step did beside moving.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,6 +115,8 @@ impl Body {
             ended: None,
             jumps: 0,
             stiffness: Stiffness { speed_mps: 0.0, lambda_radps: 0.0, per_flow: 0.0 },
+            mode: Mode::default(),
+            looks: 0,
             pieces: 1,
             look_in: 0,
         };
@@ -137,6 +143,9 @@ impl Body {
         }
         place("body.position_m", world_from_ned(motion::position(&self.state)))?;
         attitude("body.attitude", DQuat::from_xyzw(self.state[4], self.state[5], self.state[6], self.state[3]))?;
+        if !motion::is_flight(&self.state) {
+            return Err(Refused::new("body.state: expected a velocity and rates that a body can have"));
+        }
         let beyond = |armed: &Armed| match armed.fault {
             Fault::Stuck(control, _) | Fault::Free(control) => control as usize >= controls,
             Fault::EngineOut | Fault::Leak(_) => false,
@@ -144,7 +153,7 @@ impl Body {
         if self.failures.iter().any(beyond) {
             return Err(Refused::new(format_args!("body.failures: expected controls below {controls}")));
         }
-        if !(1..=crate::rigid::stiffness::MOST_PIECES).contains(&self.pieces) {
+        if !(1..=MOST_PIECES).contains(&self.pieces) {
             return Err(Refused::new(format_args!("body.pieces: expected 1..=1000, found {}", self.pieces)));
         }
         self.tanks.as_ref().map_or(Ok(()), |tanks| tanks.check(model.mass_kg))
@@ -165,7 +174,7 @@ impl Body {
         // The equations count rates against the stars.
         let rates = rates_radps + turned.conjugate() * planet.rotation();
         self.state = motion::normalised(motion::state(position, turned, 0.0, velocity, rates));
-        (self.ended, self.look_in) = (None, 0);
+        (self.ended, self.looks, self.look_in) = (None, 0, 0);
         self.jumps = self.jumps.wrapping_add(1);
         Ok(())
     }
@@ -229,22 +238,41 @@ impl Body {
         }
     }
 
-    /// How many pieces the flow of now asks for.
+    /// How many pieces the state of now asks for.
     pub fn look(&mut self, rig: &Rig, dt_s: f64) -> Result<(), EndReason> {
         let sample = rig.motion.sample(&self.state, false);
-        let (density, airspeed) = (sample.air.density_kgpm3, sample.slots[Quantity::TasMps.slot()]);
-        self.pieces = self.stiffness.pieces(Integrator::Rk4, density, airspeed, dt_s).ok_or(EndReason::Stiff)?;
-        self.look_in = STEPS_A_LOOK;
-        if rig.motion.model.refuses() && rig.motion.model.refused(&sample.slots).is_some() {
-            return Err(EndReason::OutsideTable);
+        let airspeed = sample.slots[Quantity::TasMps.slot()];
+        let flow = sample.air.density_kgpm3 * airspeed;
+        if self.looks.is_multiple_of(STEPS_A_MODE / STEPS_A_LOOK) {
+            self.mode = Mode::of(&rig.motion, &self.state, flow, airspeed);
         }
+        self.looks = self.looks.wrapping_add(1);
+        let lambda = self.mode.lambda_radps(&self.stiffness, flow);
+        let spin = motion::rates(&self.state).length();
+        self.pieces = stiffness::pieces(Integrator::Rk4, lambda, spin, dt_s).ok_or(EndReason::Stiff)?;
+        self.look_in = STEPS_A_LOOK;
         Ok(())
+    }
+
+    /// Spreads the looks of bodies that were added together over steps: one body in 16 looks at a time.
+    pub fn stagger(&mut self, id: StableId) {
+        self.looks = 1 + (id.0 / u64::from(STEPS_A_LOOK) % u64::from(STEPS_A_MODE / STEPS_A_LOOK)) as u32;
+        self.look_in = (id.0 % u64::from(STEPS_A_LOOK)) as u32;
+    }
+
+    /// Whether a table of the model refuses the state of now.
+    fn is_outside(&self, rig: &Rig) -> bool {
+        let model = &rig.motion.model;
+        model.refuses() && model.refused(&rig.motion.sample(&self.state, false).slots).is_some()
     }
 
     /// Goes on by a step.
     pub fn step(&mut self, rig: &mut Rig, ground: &SceneGround, freeze: Freeze, dt_s: f64) -> Outcome {
         self.load(rig);
-        if (self.look_in == 0 || rig.motion.model.refuses())
+        if self.is_outside(rig) {
+            return self.end(EndReason::OutsideTable, None);
+        }
+        if self.look_in == 0
             && let Err(reason) = self.look(rig, dt_s)
         {
             return self.end(reason, None);
@@ -256,7 +284,7 @@ impl Body {
         for _ in 0..self.pieces {
             y = motion::normalised(integrate::step(Integrator::Rk4, &rig.motion, 0.0, &y, piece_s, &mut None));
         }
-        if !y.iter().all(|number| number.is_finite()) {
+        if !motion::is_flight(&y) {
             return self.end(EndReason::NotFinite, None);
         }
         if freeze == Freeze::Position {

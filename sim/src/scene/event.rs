@@ -20,9 +20,9 @@ pub const MOST_KEPT: usize = 4_096;
 pub enum EndReason {
     /// It met the ground.
     Ground,
-    /// A number of its state was no longer finite; what is shown is the last good state.
+    /// A number of its state was no longer finite, or had run away; what is shown is the last good state.
     NotFinite,
-    /// The flow made it too stiff for the scene's step.
+    /// The flow or its spin made it too stiff for the scene's step.
     Stiff,
     /// A table of its model refuses what lies outside.
     OutsideTable,

@@ -221,6 +221,7 @@ impl Scene {
         body.look(&self.rigs[model as usize], step_s).map_err(|reason| {
             Refused::new(format_args!("body: expected one that steps of {step_s} s hold, found it {reason:?}"))
         })?;
+        body.stagger(id);
         let entity = self.ecs.spawn((id, body));
         self.bodies.push((id, entity));
         self.next_id += 1;

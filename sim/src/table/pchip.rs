@@ -79,7 +79,7 @@ pub fn hermite(low: f64, high: f64, slope_low: f64, slope_high: f64, step: f64, 
         high - back * (run_high + back * (square + back * cube))
     };
     // Rounding alone can leave the range.
-    value.clamp(low.min(high), low.max(high))
+    if value.is_nan() { value } else { value.max(low.min(high)).min(low.max(high)) }
 }
 
 /// Refuses values so far apart over breakpoints so close that a secant, or a few times it, is infinite.
