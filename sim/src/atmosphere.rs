@@ -88,8 +88,8 @@ pub struct Station {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layers {
     /// Temperature and pressure at the base of each of [`LAYERS`].
-    bases: [(f64, f64); 8],
-    humidity: f64,
+    pub(crate) bases: [(f64, f64); 8],
+    pub(crate) humidity: f64,
 }
 
 /// Air around an aircraft of the point-mass kind.

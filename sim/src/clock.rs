@@ -18,15 +18,15 @@ pub const MAX_DAY_RATE: f64 = 1_200.0;
 /// Fixed steps, wall time and date.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clock {
-    step_hz: u32,
-    step: u64,
-    owed_s: f64,
-    slowed_s: f64,
-    rate: f64,
-    paused: bool,
-    day_rate: f64,
-    date_base: UtcTime,
-    date_base_step: u64,
+    pub(crate) step_hz: u32,
+    pub(crate) step: u64,
+    pub(crate) owed_s: f64,
+    pub(crate) slowed_s: f64,
+    pub(crate) rate: f64,
+    pub(crate) paused: bool,
+    pub(crate) day_rate: f64,
+    pub(crate) date_base: UtcTime,
+    pub(crate) date_base_step: u64,
 }
 
 impl Clock {

@@ -27,6 +27,21 @@ pub fn world_from_ned(ned: DVec3) -> DVec3 {
     DVec3::new(ned.y, -ned.z, -ned.x)
 }
 
+/// The rotation that turns north, east, down axes into the world's. Its four parts are halves: it rounds nothing itself.
+fn world_from_ned_axes() -> DQuat {
+    DQuat::from_xyzw(0.5, 0.5, -0.5, 0.5)
+}
+
+/// An attitude to the world's axes, of one to north, east, down.
+pub fn world_attitude_from_ned(ned_from_body: DQuat) -> DQuat {
+    world_from_ned_axes() * ned_from_body
+}
+
+/// An attitude to north, east, down, of one to the world's axes.
+pub fn ned_attitude_from_world(world_from_body: DQuat) -> DQuat {
+    world_from_ned_axes().conjugate() * world_from_body
+}
+
 /// The rotation that turns view axes into body axes.
 pub fn body_from_view() -> DQuat {
     DQuat::from_mat3(&DMat3::from_cols(DVec3::Y, DVec3::NEG_Z, DVec3::NEG_X))
@@ -106,6 +121,10 @@ mod tests {
     fn ned_and_view_agree_with_the_terrain_frame() {
         assert_eq!(ned_from_world(DVec3::new(1.0, 2.0, 3.0)), DVec3::new(-3.0, 1.0, -2.0));
         assert_eq!(world_from_ned(ned_from_world(DVec3::new(1.0, 2.0, 3.0))), DVec3::new(1.0, 2.0, 3.0));
+        for axis in DVec3::AXES {
+            assert_eq!(world_attitude_from_ned(DQuat::IDENTITY) * axis, world_from_ned(axis));
+            assert_eq!(ned_attitude_from_world(DQuat::IDENTITY) * axis, ned_from_world(axis));
+        }
         let given = Angles { heading_rad: 2.0, pitch_rad: 0.3, roll_rad: -0.4 };
         let view = terrain::frame::attitude(2.0, 0.3, -0.4);
         assert!(view_attitude(attitude(given)).dot(view).abs() > 1.0 - 1e-14);

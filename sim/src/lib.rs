@@ -4,7 +4,8 @@
 //! a step has one fixed length; what a step gives depends only on the state and the commands before it, so two runs with
 //! the same inputs give the same [`Snapshot::hash`]. Bad input is refused at the edge ([`input`]), never stepped.
 //!
-//! The ground is a function of plan position, [`HeightAt`]: it answers `None` where there is no data.
+//! The ground of a scene is a [`SceneGround`]: exact where it is made of an area of posts, else a function of plan
+//! position, [`HeightAt`], that answers `None` where there is no data.
 #![forbid(unsafe_code)]
 
 pub mod aircraft;
@@ -23,6 +24,7 @@ pub mod planet;
 pub mod random;
 pub mod rigid;
 pub mod run;
+pub mod scene;
 pub mod slew;
 pub mod snapshot;
 pub mod table;
@@ -30,17 +32,16 @@ pub mod track;
 pub mod turbulence;
 pub mod utc;
 pub mod wind;
-pub mod world;
 pub mod world_ground;
 
 pub use aircraft::{AircraftState, Condition};
 pub use clock::Clock;
 pub use input::{Command, Controls};
 pub use run::{SimThread, lockstep};
+pub use scene::{Scene, SceneGround};
 pub use snapshot::{Flags, Mode, Snapshot};
 pub use track::Track;
 pub use utc::UtcTime;
-pub use world::Scene;
 
 /// Ground height in metres above mean sea level over a plan point (x, z) of the world; `None` where there is no data.
 pub type HeightAt = dyn Fn(f64, f64) -> Option<f64> + Send + Sync;

@@ -10,7 +10,7 @@
 /// A stream of random numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stream {
-    state: u64,
+    pub(crate) state: u64,
 }
 
 const INCREMENT: u64 = 0x9e37_79b9_7f4a_7c15;

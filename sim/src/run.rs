@@ -5,24 +5,24 @@
 //! renderer that stalls costs the simulation nothing. A simulation that stalls is slowed ([`crate::clock`]).
 
 use crate::aircraft::AircraftState;
+use crate::clock::MAX_FRAME_S;
 use crate::input::{Command, Controls};
+use crate::scene::{self, Scene, SceneGround};
 use crate::snapshot::Snapshot;
 use crate::track::Track;
 use crate::utc::UtcTime;
-use crate::world::Scene;
-use crate::{HeightAt, clock::MAX_FRAME_S};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Takes `steps` steps and gives the scene as it stands then. A paused scene takes none.
-pub fn lockstep(scene: &mut Scene, height_at: &HeightAt, steps: u32) -> Arc<Snapshot> {
+pub fn lockstep(scene: &mut Scene, ground: &SceneGround, steps: u32) -> Arc<Snapshot> {
     if scene.clock.paused() {
-        scene.look_down(height_at);
+        scene.look_down(ground);
     } else {
         for _ in 0..steps {
-            scene.step(height_at);
+            scene.step(ground);
         }
     }
     Arc::new(scene.snapshot())
@@ -47,7 +47,9 @@ pub enum Message {
     /// Moves along the track to a distance, metres.
     SeekTrack(f64),
     /// Another ground.
-    Ground(Arc<HeightAt>),
+    Ground(SceneGround),
+    /// An order to the scene; one that is refused changes nothing.
+    Order(Box<scene::Command>),
     /// Ends the thread.
     Stop,
 }
@@ -86,8 +88,8 @@ impl SimThread {
     ///
     /// # Errors
     /// The system's, if it gives no thread.
-    pub fn start(mut scene: Scene, height_at: Arc<HeightAt>) -> std::io::Result<Self> {
-        scene.look_down(&*height_at);
+    pub fn start(mut scene: Scene, ground: SceneGround) -> std::io::Result<Self> {
+        scene.look_down(&ground);
         let first = Arc::new(scene.snapshot());
         let published = Published { before: first.clone(), last: first, fraction: 0.0, at: Instant::now() };
         let published = Arc::new(Mutex::new(published));
@@ -95,7 +97,7 @@ impl SimThread {
         let step_s = scene.clock.step_s();
         let shared = published.clone();
         let builder = std::thread::Builder::new().name("simulation".to_owned());
-        let thread = builder.spawn(move || drive(scene, height_at, &inbox, &shared))?;
+        let thread = builder.spawn(move || drive(scene, ground, &inbox, &shared))?;
         Ok(Self { messages, published, thread: Some(thread), step_s })
     }
 
@@ -155,12 +157,12 @@ fn locked(published: &Mutex<Published>) -> MutexGuard<'_, Published> {
     published.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn drive(
-    mut scene: Scene,
-    mut height_at: Arc<HeightAt>,
-    inbox: &Receiver<Message>,
-    shared: &Mutex<Published>,
-) -> Scene {
+/// Does a command; one that is refused leaves the scene as it was and nobody waits for an answer.
+fn order(scene: &mut Scene, command: scene::Command) {
+    let _ = scene.order(command);
+}
+
+fn drive(mut scene: Scene, mut ground: SceneGround, inbox: &Receiver<Message>, shared: &Mutex<Published>) -> Scene {
     let mut then = Instant::now();
     loop {
         let step_s = scene.clock.step_s() / scene.clock.rate();
@@ -177,12 +179,16 @@ fn drive(
                 Message::Controls(controls) => scene.set_controls(controls),
                 Message::Command(command) => scene.command(command),
                 Message::Paused(paused) => scene.clock.set_paused(paused),
-                Message::Date(date) => scene.clock.set_date(date),
-                Message::DayRate(rate) => scene.clock.set_day_rate(rate),
+                Message::Date(date) => order(&mut scene, scene::Command::Date(date)),
+                Message::DayRate(rate) => order(&mut scene, scene::Command::DayRate(rate)),
                 Message::Place(state) => scene.place(*state),
                 Message::Track(track) => scene.fly_track(*track),
                 Message::SeekTrack(distance_m) => scene.seek_track(distance_m),
-                Message::Ground(ground) => height_at = ground,
+                Message::Ground(other) => {
+                    ground = other;
+                    scene.ground_changed();
+                }
+                Message::Order(command) => order(&mut scene, *command),
                 Message::Stop => return scene,
             }
             changed = true;
@@ -193,21 +199,21 @@ fn drive(
         then = now;
         if due == 0 {
             if changed && scene.clock.paused() {
-                scene.look_down(&*height_at);
+                scene.look_down(&ground);
                 let snapshot = Arc::new(scene.snapshot());
                 let mut published = locked(shared);
                 (published.before, published.last) = (snapshot.clone(), snapshot);
             }
             continue;
         }
-        let mut before = None;
-        for _ in 0..due {
-            before = Some(scene.snapshot());
-            scene.step(&*height_at);
+        for _ in 1..due {
+            scene.step(&ground);
         }
+        let before = scene.snapshot();
+        scene.step(&ground);
         let last = Arc::new(scene.snapshot());
         let mut published = locked(shared);
-        published.before = before.map_or_else(|| last.clone(), Arc::new);
+        published.before = Arc::new(before);
         published.last = last;
         published.fraction = scene.clock.fraction();
         published.at = now;

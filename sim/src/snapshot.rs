@@ -5,8 +5,10 @@
 
 use crate::aircraft::AircraftState;
 use crate::input::Controls;
+use crate::scene::{EntityView, Event, FNV_BASIS, fnv, interpolated};
 use crate::utc::UtcTime;
 use glam::DQuat;
+use std::sync::Arc;
 
 /// A number that names an entity for as long as the scene lasts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -66,6 +68,18 @@ pub struct Snapshot {
     pub track_m: f64,
     /// Counts jumps (reset, slew, placing), across which nothing may be interpolated.
     pub jumps: u32,
+    /// Rigid bodies, by id.
+    pub bodies: Arc<[EntityView]>,
+    /// Projectiles in the air, by id.
+    pub projectiles: Arc<[EntityView]>,
+    /// Targets, by id.
+    pub targets: Arc<[EntityView]>,
+    /// What happened of late, by number (see [`crate::scene::KEPT_S`]).
+    pub events: Arc<[Event]>,
+    /// Events since the scene began.
+    pub events_counted: u64,
+    /// A hash over all of them.
+    pub events_chain: u64,
 }
 
 impl Flags {
@@ -83,6 +97,12 @@ impl Flags {
 }
 
 impl Snapshot {
+    /// What happened since an earlier snapshot, as far as it is still told.
+    pub fn events_since(&self, earlier: &Self) -> &[Event] {
+        let first = self.events.partition_point(|event| event.number < earlier.events_counted);
+        &self.events[first..]
+    }
+
     /// The scene at part `t` (0..1) of the way from `a` to `b`: places straight, attitudes along the shortest turn.
     ///
     /// Where the aircraft jumped between the two, `b` as it is.
@@ -100,6 +120,9 @@ impl Snapshot {
             date: a.date.plus_s(since_s * t),
             height_above_ground_m: height.or(b.height_above_ground_m),
             track_m: mix(a.track_m, b.track_m),
+            bodies: interpolated(&a.bodies, &b.bodies, t),
+            projectiles: interpolated(&a.projectiles, &b.projectiles, t),
+            targets: interpolated(&a.targets, &b.targets, t),
             aircraft: AircraftState {
                 position_m: from.position_m.lerp(to.position_m, t),
                 velocity_mps: from.velocity_mps.lerp(to.velocity_mps, t),
@@ -116,8 +139,6 @@ impl Snapshot {
     }
 
     /// FNV-1a, 64 bits, over names and bit patterns: equal for equal runs on any machine with the same arithmetic.
-    ///
-    /// Source: G. Fowler, L. Noll, P. Vo, FNV hash, 1991 (offset basis and prime of 64 bits).
     pub fn hash(&self) -> u64 {
         let s = &self.aircraft;
         let (p, v, q, w) = (s.position_m, s.velocity_mps, s.attitude, s.rates_radps);
@@ -154,15 +175,15 @@ impl Snapshot {
             | (self.flags.mode as u64) << 16
             | u64::from(self.jumps) << 32;
         let whole = [self.step, self.aircraft_id.0, self.date.unix_ns as u64, flags];
+        let entities = self.bodies.iter().chain(&*self.projectiles).chain(&*self.targets).flat_map(EntityView::words);
         let words = whole.into_iter().chain(floats.map(f64::to_bits));
-        words
-            .flat_map(u64::to_le_bytes)
-            .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
+        let words = words.chain([self.events_counted, self.events_chain]).chain(entities);
+        words.fold(FNV_BASIS, |hash, word| fnv(hash, &word.to_le_bytes()))
     }
 }
 
 /// Part of the way from one attitude to another along the shortest turn.
-fn turned(from: DQuat, to: DQuat, t: f64) -> DQuat {
+pub(crate) fn turned(from: DQuat, to: DQuat, t: f64) -> DQuat {
     let to = if from.dot(to) < 0.0 { -to } else { to };
     from.slerp(to, t).normalize()
 }

@@ -17,11 +17,11 @@ const SLOWEST_MPS: f64 = 1.0;
 /// Turbulence along a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dryden {
-    sigma_mps: f64,
-    stream: Stream,
-    along: f64,
+    pub(crate) sigma_mps: f64,
+    pub(crate) stream: Stream,
+    pub(crate) along: f64,
     /// Of the lateral and the vertical axis: the filter's two states, in units of sigma.
-    across: [[f64; 2]; 2],
+    pub(crate) across: [[f64; 2]; 2],
 }
 
 impl Dryden {

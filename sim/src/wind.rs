@@ -9,7 +9,7 @@ use glam::DVec3;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Wind {
     /// Heights, metres, rising, and velocities.
-    rows: Vec<(f64, DVec3)>,
+    pub(crate) rows: Vec<(f64, DVec3)>,
 }
 
 /// A height that does not rise over the one before: its row, counted from 0, and the two heights, metres.

@@ -33,7 +33,7 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
     let length = Length::of(args, true);
     let plan = Plan::new(args, length, LOCKSTEP_HZ, &world, &scenery.area)?;
     let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
-    let height_at = stage::height_at(&scenery.area);
+    let ground = sim::SceneGround::from(scenery.area.clone());
     let mut scene = plan.scene(date);
     let mut sun = Sun::new(&world, date)?;
     let head = Head::default();
@@ -48,10 +48,10 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
     let mut steps = 0;
     let bar = Progress::new("flying");
     for frame in 0..frames {
-        let mut snapshot = sim::lockstep(&mut scene, &*height_at, 1);
+        let mut snapshot = sim::lockstep(&mut scene, &ground, 1);
         sim_hash.add(snapshot.hash());
         for _ in 1..STEPS {
-            snapshot = sim::lockstep(&mut scene, &*height_at, 1);
+            snapshot = sim::lockstep(&mut scene, &ground, 1);
             sim_hash.add(snapshot.hash());
         }
         steps = snapshot.step;

@@ -42,13 +42,13 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     let length = Length::of(args, true);
     let plan = Plan::new(args, length, hz, &world, &scenery.area)?;
     let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
-    let height_at = stage::height_at(&scenery.area);
+    let ground = sim::SceneGround::from(scenery.area.clone());
     let mut scene = plan.scene(date);
-    sim::lockstep(&mut scene, &*height_at, 1);
+    sim::lockstep(&mut scene, &ground, 1);
     // Held until the first picture, which takes as long as filling the window does.
     scene.clock.set_paused(true);
     let sim =
-        SimThread::start(scene, height_at).map_err(|error| Failure::while_doing("starting the simulation", error))?;
+        SimThread::start(scene, ground).map_err(|error| Failure::while_doing("starting the simulation", error))?;
     let mut sun = Sun::new(&world, date)?;
     let head = Head::default();
     let period = Duration::from_secs_f64(1.0 / hz);

@@ -40,7 +40,7 @@ pub fn take(flown: Scenery, plan: &Plan, date: sim::UtcTime, folder: &Path) -> R
     let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), Look { wait: true, keep_depth: false, ..look });
     let size_px = look.size_px;
     let target = Offscreen::new(&scenery.gpu, size_px).map_err(device_failed)?;
-    let height_at = stage::height_at(&scenery.area);
+    let ground = sim::SceneGround::from(scenery.area.clone());
     let mut scene = plan.scene(date);
     let to_sun = Sun::new(&world, date)?.at(&world, date);
     let head = Head::default();
@@ -51,7 +51,7 @@ pub fn take(flown: Scenery, plan: &Plan, date: sim::UtcTime, folder: &Path) -> R
         bar.show(number as f64 / plan.pictures.len() as f64);
         scene.seek_track(place.distance_m);
         // A step keeps a track that runs under the ground above it.
-        let snapshot = sim::lockstep(&mut scene, &*height_at, 1);
+        let snapshot = sim::lockstep(&mut scene, &ground, 1);
         let view = scenery.view(stage::eye_m(&snapshot), stage::attitude(&snapshot, &head), size_px);
         for _ in 0..MOST_UPDATES {
             scenery.follow(&view, 0.0, to_sun);

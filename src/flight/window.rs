@@ -164,13 +164,13 @@ impl<'a> Cockpit<'a> {
         if self.flown.is_none() {
             let plan = Plan::new(self.args, self.length, LOCKSTEP_HZ, &self.world, &scenery.area)?;
             let date = self.args.view.time.unwrap_or_else(|| scenery::default_moment(&self.world));
-            let height_at = stage::height_at(&scenery.area);
+            let ground = sim::SceneGround::from(scenery.area.clone());
             let mut scene = plan.scene(date);
-            sim::lockstep(&mut scene, &*height_at, 1);
+            sim::lockstep(&mut scene, &ground, 1);
             // Held until the first picture is there.
             scene.clock.set_paused(true);
             self.flown = Some(Flown {
-                sim: SimThread::start(scene, height_at)
+                sim: SimThread::start(scene, ground)
                     .map_err(|error| Failure::while_doing("starting the simulation", error))?,
                 sun: Sun::new(&self.world, date)?,
                 begun: None,

@@ -262,13 +262,14 @@ impl Model {
 
     /// Force and moment at the flight's quantities, which stand in `slots` with the controls behind them.
     ///
-    /// `through_air` is the body's velocity through the air, forward, right, down.
+    /// `through_air` is the body's velocity through the air, forward, right, down; `thrust_share` scales all thrusts.
     #[inline]
     pub fn loads(
         &self,
         slots: &mut [f64; SLOTS],
         through_air: DVec3,
         dynamic_pressure_pa: f64,
+        thrust_share: f64,
         memory: &mut LinkMemory,
     ) -> Loads {
         let tables = self.tables.values(slots);
@@ -279,7 +280,8 @@ impl Model {
         let mut loads = Loads::default();
         if !self.links.is_empty() {
             self.links.run(slots, memory, &mut c);
-            (loads.force_n, loads.moment_nm) = self.links.thrust(slots);
+            let (force_n, moment_nm) = self.links.thrust(slots);
+            loads = Loads { force_n: force_n * thrust_share, moment_nm: moment_nm * thrust_share };
         }
         let pressed = dynamic_pressure_pa * self.area_m2;
         let force = Flow::of(through_air).force(self.axes, &c) * pressed;
@@ -288,7 +290,7 @@ impl Model {
         loads.force_n += force;
         loads.moment_nm += moment + (self.moment_point_m - self.cg_m).cross(force);
         for thrust in &self.thrusts {
-            let force = thrust.force_n * thrust.of.product(slots, &tables);
+            let force = thrust.force_n * (thrust.of.product(slots, &tables) * thrust_share);
             loads.force_n += force;
             loads.moment_nm += (thrust.at_m - self.cg_m).cross(force);
         }

@@ -43,6 +43,10 @@ pub struct RigidMotion {
     pub controls: Vec<f64>,
     /// Velocity of a gust along body axes, m/s, held over a step.
     pub gust_mps: DVec3,
+    /// Mass of now, kg: the model's unless the caller burns fuel. The inertia stays the model's.
+    pub mass_kg: f64,
+    /// What the engines give of their thrust: 1, or 0 when they are out.
+    pub thrust_share: f64,
     memory: RefCell<LinkMemory>,
     still: bool,
 }
@@ -125,12 +129,15 @@ impl RigidMotion {
     /// A body in its surroundings, controls at their initial values.
     pub fn new(model: Arc<Model>, planet: Planet, atmosphere: Atmosphere, wind: Wind) -> Self {
         let (controls, memory, still) = (model.initial_controls(), RefCell::new(model.memory()), wind.is_still());
-        Self { model, planet, atmosphere, wind, controls, gust_mps: DVec3::ZERO, memory, still }
+        let mass_kg = model.mass_kg;
+        let (gust_mps, thrust_share) = (DVec3::ZERO, 1.0);
+        Self { model, planet, atmosphere, wind, controls, gust_mps, mass_kg, thrust_share, memory, still }
     }
 
     /// Takes another model with the same controls.
     pub fn set_model(&mut self, model: Arc<Model>) {
         self.memory = RefCell::new(model.memory());
+        self.mass_kg = model.mass_kg;
         self.model = model;
     }
 
@@ -208,7 +215,8 @@ impl RigidMotion {
         set(Quantity::DensityKgpm3, air.density_kgpm3);
         set(Quantity::DynamicPressurePa, dynamic_pressure_pa);
 
-        let loads = model.loads(&mut slots, through_air, dynamic_pressure_pa, &mut self.memory.borrow_mut());
+        let mut memory = self.memory.borrow_mut();
+        let loads = model.loads(&mut slots, through_air, dynamic_pressure_pa, self.thrust_share, &mut memory);
         Sample {
             frame_from_body,
             altitude_m: place.altitude_m,
@@ -261,7 +269,7 @@ impl Motion<f64, N> for RigidMotion {
         let model = &*self.model;
         let fall = self.planet.fall_mps2(position(y), velocity(y));
         let v = velocity(y);
-        let a = sample.frame_from_body * (sample.loads.force_n / model.mass_kg) + fall;
+        let a = sample.frame_from_body * (sample.loads.force_n / self.mass_kg) + fall;
         let w = rates(y);
         let turn = model.inverse_inertia * (sample.loads.moment_nm - w.cross(model.inertia_kgm2 * w));
         let [qw, qx, qy, qz] = Self::turning(y, sample.earth_rates);

@@ -55,8 +55,8 @@ impl Stiffness {
 /// The mode of a state in flight, and how it grows until it is taken anew.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Mode {
-    lambda_radps: f64,
-    flow: f64,
+    pub(crate) lambda_radps: f64,
+    pub(crate) flow: f64,
 }
 
 impl Mode {

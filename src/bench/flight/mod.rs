@@ -99,7 +99,7 @@ pub fn bench(area: &Area, load: Load) -> Result<Flown, Failure> {
         let (mut memory, mut slots) = (flight.motion.model.memory(), sample.slots);
         times.loads.push(
             4.0 * each_ns(load.steps, || {
-                flight.motion.model.loads(black_box(&mut slots), sample.through_air, 1_500.0, &mut memory)
+                flight.motion.model.loads(black_box(&mut slots), sample.through_air, 1_500.0, 1.0, &mut memory)
             }),
         );
         times.shell.push(shell.step_ns(load.steps)?);

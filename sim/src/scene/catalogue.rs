@@ -1,0 +1,164 @@
+//! What the entities of a scene are made of: models, projectiles and shapes by name, shared and never changed.
+//!
+//! A saved scene holds names and fingerprints, not the things: who restores it brings the same catalogue. A fingerprint
+//! is a hash over everything that the thing is made of as this build prints it, the name of its file left out (that of
+//! a model's DAVE-ML files counts, as the model names them). Another build may print otherwise: then a saved scene is
+//! refused, never misread.
+//!
+//! Invariant others rely on: a place in a list means the same thing for as long as the scene lasts.
+
+use super::Refused;
+use super::codec::{FNV_BASIS, LONGEST_TEXT, fnv};
+use crate::ballistics::projectile::Projectile;
+use crate::ballistics::shape::Shape;
+use crate::rigid::Model;
+use crate::track::Track;
+use std::fmt::{self, Debug, Write};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A thing with its name.
+#[derive(Debug, Clone)]
+pub(super) struct Named<T> {
+    pub name: String,
+    pub thing: T,
+    pub fingerprint: u64,
+}
+
+/// Models, projectiles and shapes by name.
+#[derive(Debug, Clone, Default)]
+pub struct Catalogue {
+    pub(super) models: Vec<Named<Arc<Model>>>,
+    pub(super) projectiles: Vec<Named<Arc<Projectile>>>,
+    pub(super) shapes: Vec<Named<Shape>>,
+    /// The own aircraft's track, for restoring a scene that has one.
+    pub track: Option<Track>,
+}
+
+impl Catalogue {
+    /// An empty one.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a rigid body's model.
+    ///
+    /// # Errors
+    /// [`Refused`] if the name is taken or too long.
+    pub fn add_model(&mut self, name: &str, model: Model) -> Result<(), Refused> {
+        let mut nameless = model.clone();
+        nameless.file = PathBuf::new();
+        add(&mut self.models, "model", name, Arc::new(model), fingerprint(&nameless))
+    }
+
+    /// Adds a projectile.
+    ///
+    /// # Errors
+    /// [`Refused`] if the name is taken or too long.
+    pub fn add_projectile(&mut self, name: &str, projectile: Projectile) -> Result<(), Refused> {
+        let nameless = Projectile { file: PathBuf::new(), ..projectile.clone() };
+        add(&mut self.projectiles, "projectile", name, Arc::new(projectile), fingerprint(&nameless))
+    }
+
+    /// Adds a target's shape.
+    ///
+    /// # Errors
+    /// [`Refused`] if the name is taken or too long.
+    pub fn add_shape(&mut self, name: &str, shape: Shape) -> Result<(), Refused> {
+        let print = fingerprint(&shape);
+        add(&mut self.shapes, "shape", name, shape, print)
+    }
+
+    /// The name of a model by its place, as snapshots give it.
+    pub fn model_name(&self, place: u32) -> Option<&str> {
+        self.models.get(place as usize).map(|named| named.name.as_str())
+    }
+
+    /// The name of a projectile by its place.
+    pub fn projectile_name(&self, place: u32) -> Option<&str> {
+        self.projectiles.get(place as usize).map(|named| named.name.as_str())
+    }
+
+    /// The name of a shape by its place.
+    pub fn shape_name(&self, place: u32) -> Option<&str> {
+        self.shapes.get(place as usize).map(|named| named.name.as_str())
+    }
+
+    pub(super) fn model(&self, name: &str) -> Result<u32, Refused> {
+        place("model", &self.models, name)
+    }
+
+    pub(super) fn projectile(&self, name: &str) -> Result<u32, Refused> {
+        place("projectile", &self.projectiles, name)
+    }
+
+    pub(super) fn shape(&self, name: &str) -> Result<u32, Refused> {
+        place("shape", &self.shapes, name)
+    }
+
+    /// Kind, name and fingerprint of everything, in order.
+    pub(super) fn prints(&self) -> impl Iterator<Item = (u8, &str, u64)> {
+        let models = self.models.iter().map(|named| (0, named.name.as_str(), named.fingerprint));
+        let projectiles = self.projectiles.iter().map(|named| (1, named.name.as_str(), named.fingerprint));
+        let shapes = self.shapes.iter().map(|named| (2, named.name.as_str(), named.fingerprint));
+        models.chain(projectiles).chain(shapes)
+    }
+}
+
+fn add<T>(list: &mut Vec<Named<T>>, what: &str, name: &str, thing: T, fingerprint: u64) -> Result<(), Refused> {
+    if name.is_empty() || name.len() > LONGEST_TEXT {
+        return Err(Refused::new(format_args!(
+            "{what}: expected a name of 1 to {LONGEST_TEXT} bytes, found {}",
+            name.len()
+        )));
+    }
+    if list.iter().any(|named| named.name == name) {
+        return Err(Refused::new(format_args!("{what}: expected a name that is not taken, found {name}")));
+    }
+    list.push(Named { name: name.to_owned(), thing, fingerprint });
+    Ok(())
+}
+
+fn place<T>(what: &str, list: &[Named<T>], name: &str) -> Result<u32, Refused> {
+    let missing = || {
+        let known: Vec<&str> = list.iter().map(|named| named.name.as_str()).collect();
+        Refused::new(format_args!("{what}: expected one of [{}], found {name}", known.join(", ")))
+    };
+    list.iter().position(|named| named.name == name).map(|place| place as u32).ok_or_else(missing)
+}
+
+/// A hash of what is written to it, so that no text of a large model is ever held.
+struct Hashing(u64);
+
+impl Write for Hashing {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0 = fnv(self.0, text.as_bytes());
+        Ok(())
+    }
+}
+
+/// A hash over all that a thing is made of. Numbers print with all their digits.
+pub(super) fn fingerprint(thing: &impl Debug) -> u64 {
+    let mut hashing = Hashing(FNV_BASIS);
+    // A hash takes any text.
+    let _ = write!(hashing, "{thing:?}");
+    hashing.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_one_bit_is_another_fingerprint() {
+        let mut catalogue = Catalogue::new();
+        catalogue.add_shape("ball", Shape::sphere(1.0).unwrap()).unwrap();
+        catalogue.add_shape("other", Shape::sphere(1.0 + f64::EPSILON).unwrap()).unwrap();
+        let again = catalogue.add_shape("ball", Shape::sphere(2.0).unwrap()).unwrap_err();
+        assert!(again.to_string().contains("not taken, found ball"));
+        assert!(catalogue.add_shape("", Shape::sphere(2.0).unwrap()).is_err());
+        let prints: Vec<u64> = catalogue.prints().map(|(_, _, print)| print).collect();
+        assert_ne!(prints[0], prints[1]);
+        assert!(catalogue.shape("cube").unwrap_err().to_string().contains("expected one of [ball, other], found cube"));
+    }
+}

@@ -1,0 +1,196 @@
+//! What happened in a scene: impacts, crashes, failures, refusals, in order and numbered.
+//!
+//! World frame, metres, seconds. A snapshot carries the events of the last [`KEPT_S`]; each has its number, so a reader
+//! that looks less often takes those from its last number on, and sees by a gap that it missed some.
+//!
+//! Invariant others rely on: numbers count from 0 without a gap; the log's chain is a hash over every event there ever
+//! was, so two runs that ended alike but struck elsewhere do not look the same.
+
+use super::codec::{Coded, FNV_BASIS, Reader, SaveError, coded, coded_choice, fnv};
+use crate::snapshot::StableId;
+use glam::DVec3;
+
+/// How long an event stays in snapshots, simulated seconds.
+pub const KEPT_S: f64 = 0.5;
+/// Most events that stay, whatever their age: a barrage does not make snapshots dear.
+pub const MOST_KEPT: usize = 4_096;
+
+/// Why an entity's flight ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum EndReason {
+    /// It met the ground.
+    Ground,
+    /// A number of its state was no longer finite, or had run away; what is shown is the last good state.
+    NotFinite,
+    /// The flow or its spin made it too stiff for the scene's step.
+    Stiff,
+    /// A table of its model refuses what lies outside.
+    OutsideTable,
+    /// It left the bounds of any world.
+    LeftWorld,
+}
+coded_choice!(EndReason { Ground, NotFinite, Stiff, OutsideTable, LeftWorld });
+
+/// Where a projectile struck.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strike {
+    /// The projectile.
+    pub projectile: StableId,
+    /// Its place in the catalogue.
+    pub kind: u32,
+    /// Who fired it.
+    pub owner: StableId,
+    /// Which of the owner's rounds it was, from 0.
+    pub round: u64,
+    /// The target; `None` is the ground.
+    pub target: Option<StableId>,
+    /// Where.
+    pub point_m: DVec3,
+    /// The same in the target's own frame; the point itself on the ground.
+    pub point_in_target_m: DVec3,
+    /// Outward unit normal of what was struck.
+    pub normal: DVec3,
+    /// Velocity relative to what was struck, m/s.
+    pub velocity_mps: DVec3,
+}
+coded!(Strike { projectile, kind, owner, round, target, point_m, point_in_target_m, normal, velocity_mps });
+
+/// What happened.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Happening {
+    /// A projectile struck.
+    Impact(Strike),
+    /// A body ended its flight.
+    Crash {
+        /// The body.
+        id: StableId,
+        /// Why.
+        reason: EndReason,
+        /// Where.
+        point_m: DVec3,
+        /// Normal of the ground; zero where it was none.
+        normal: DVec3,
+        /// Its velocity there, m/s.
+        velocity_mps: DVec3,
+    },
+    /// A projectile was taken out without an impact.
+    Lost {
+        /// The projectile.
+        id: StableId,
+        /// Why.
+        reason: EndReason,
+    },
+    /// A failure set in.
+    Failure {
+        /// Whose.
+        id: StableId,
+        /// Its name.
+        name: String,
+    },
+    /// The tanks ran dry.
+    OutOfFuel {
+        /// Whose.
+        id: StableId,
+    },
+    /// A command that was due was refused.
+    Refused {
+        /// What was expected and what was found.
+        why: String,
+    },
+}
+
+/// Something that happened.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// Its number, from 0.
+    pub number: u64,
+    /// Scene time, seconds; within the step that it happened in.
+    pub time_s: f64,
+    /// What.
+    pub what: Happening,
+}
+coded!(Event { number, time_s, what });
+
+impl Coded for Happening {
+    fn put(&self, out: &mut Vec<u8>) {
+        match self {
+            Self::Impact(strike) => {
+                out.push(0);
+                strike.put(out);
+            }
+            Self::Crash { id, reason, point_m, normal, velocity_mps } => {
+                out.push(1);
+                id.put(out);
+                reason.put(out);
+                [*point_m, *normal, *velocity_mps].put(out);
+            }
+            Self::Lost { id, reason } => {
+                out.push(2);
+                id.put(out);
+                reason.put(out);
+            }
+            Self::Failure { id, name } => {
+                out.push(3);
+                id.put(out);
+                name.put(out);
+            }
+            Self::OutOfFuel { id } => {
+                out.push(4);
+                id.put(out);
+            }
+            Self::Refused { why } => {
+                out.push(5);
+                why.put(out);
+            }
+        }
+    }
+    fn take(from: &mut Reader<'_>) -> Result<Self, SaveError> {
+        Ok(match from.take::<u8>()? {
+            0 => Self::Impact(from.take()?),
+            1 => {
+                let (id, reason) = (from.take()?, from.take()?);
+                let [point_m, normal, velocity_mps] = from.take()?;
+                Self::Crash { id, reason, point_m, normal, velocity_mps }
+            }
+            2 => Self::Lost { id: from.take()?, reason: from.take()? },
+            3 => Self::Failure { id: from.take()?, name: from.take()? },
+            4 => Self::OutOfFuel { id: from.take()? },
+            5 => Self::Refused { why: from.take()? },
+            found => return Err(from.refuse(format_args!("event: expected 0..=5, found {found}"))),
+        })
+    }
+}
+
+/// The events so far.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Log {
+    pub recent: Vec<Event>,
+    pub counted: u64,
+    pub chain: u64,
+}
+coded!(Log { recent, counted, chain });
+
+impl Log {
+    pub fn new() -> Self {
+        Self { recent: Vec::new(), counted: 0, chain: FNV_BASIS }
+    }
+
+    pub fn add(&mut self, time_s: f64, what: Happening) {
+        let event = Event { number: self.counted, time_s, what };
+        let mut bytes = Vec::new();
+        event.put(&mut bytes);
+        self.chain = fnv(self.chain, &bytes);
+        self.counted += 1;
+        self.recent.push(event);
+    }
+
+    /// Drops what is older than it is kept.
+    pub fn forget(&mut self, now_s: f64) {
+        // Events of a step stand in the order of entities, not of time: the first young one ends the old ones.
+        let old = self.recent.iter().position(|event| event.time_s >= now_s - KEPT_S).unwrap_or(self.recent.len());
+        let old = old.max(self.recent.len().saturating_sub(MOST_KEPT));
+        if old > 0 {
+            self.recent.drain(..old);
+        }
+    }
+}

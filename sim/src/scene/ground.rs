@@ -1,0 +1,166 @@
+//! The ground of a scene: its heights, and where a swept path meets it.
+//!
+//! Frame: the world's (X east, Y up, Z south), metres. Made of an [`Area`] the ground is its level-0 triangles, and a
+//! path meets it exactly ([`ground_impact`]). Made of a closure, as tests and simple callers do, there are only heights:
+//! a path is then looked at every [`LOOK_M`] of its way, and a ridge narrower than that may be missed.
+//!
+//! Invariant others rely on: heights and impacts are those of one surface, and void is no ground to either.
+
+use crate::HeightAt;
+use crate::ballistics::impact::ground_impact;
+use crate::ballistics::path::StepPath;
+use glam::DVec3;
+use std::fmt;
+use std::sync::Arc;
+use terrain::Area;
+
+/// Way between two looks at a ground that is a closure, metres: posts stand at least 25 m apart.
+pub const LOOK_M: f64 = 25.0;
+/// Most looks at one path.
+const MOST_LOOKS: f64 = 4_096.0;
+
+/// The ground; cheap to clone.
+#[derive(Clone)]
+pub struct SceneGround {
+    heights: Arc<HeightAt>,
+    area: Option<Area>,
+}
+
+/// Where a path meets the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundTouch {
+    /// Fraction of the path, 0..=1.
+    pub fraction: f64,
+    /// The point.
+    pub point_m: DVec3,
+    /// Upward unit normal of the ground there.
+    pub normal: DVec3,
+    /// Velocity of what meets it, m/s.
+    pub velocity_mps: DVec3,
+}
+
+impl fmt::Debug for SceneGround {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.area.is_some() { "SceneGround(area)" } else { "SceneGround(heights)" })
+    }
+}
+
+impl From<Area> for SceneGround {
+    fn from(area: Area) -> Self {
+        let of = area.clone();
+        Self { heights: Arc::new(move |x_m, z_m| of.height_m(x_m, z_m)), area: Some(area) }
+    }
+}
+
+impl From<Arc<HeightAt>> for SceneGround {
+    fn from(heights: Arc<HeightAt>) -> Self {
+        Self { heights, area: None }
+    }
+}
+
+impl SceneGround {
+    /// The ground of a function of plan position (x, z).
+    pub fn heights(height_m: impl Fn(f64, f64) -> Option<f64> + Send + Sync + 'static) -> Self {
+        Self { heights: Arc::new(height_m), area: None }
+    }
+
+    /// No ground anywhere.
+    pub fn void() -> Self {
+        Self::heights(|_, _| None)
+    }
+
+    /// Heights as a function.
+    pub fn height_at(&self) -> &HeightAt {
+        &*self.heights
+    }
+
+    /// Ground height over a plan point; `None` over void.
+    pub fn height_m(&self, x_m: f64, z_m: f64) -> Option<f64> {
+        match &self.area {
+            Some(area) => area.height_m(x_m, z_m),
+            None => (self.heights)(x_m, z_m).filter(|height| height.is_finite()),
+        }
+    }
+
+    /// The first point of a path on or under the ground.
+    pub fn touch(&self, path: &StepPath) -> Option<GroundTouch> {
+        let Some(area) = &self.area else { return self.looked_at(path) };
+        let impact = ground_impact(path, area)?;
+        Some(GroundTouch {
+            fraction: impact.fraction,
+            point_m: impact.point_m,
+            normal: impact.normal,
+            velocity_mps: impact.velocity_mps,
+        })
+    }
+
+    fn looked_at(&self, path: &StepPath) -> Option<GroundTouch> {
+        if !path.is_sound() {
+            return None;
+        }
+        let under = |fraction: f64| {
+            let at = path.position_m(fraction);
+            self.height_m(at.x, at.z).is_some_and(|height_m| at.y <= height_m)
+        };
+        let looks = (path.from_m.distance(path.to_m) / LOOK_M).ceil().clamp(1.0, MOST_LOOKS);
+        let first = (0..=looks as u32).map(|look| f64::from(look) / looks).find(|fraction| under(*fraction))?;
+        let (mut low, mut high) = ((first - 1.0 / looks).max(0.0), first);
+        // Each look halves the bracket: 60 of them leave a rounding.
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if under(middle) { high = middle } else { low = middle }
+        }
+        let point_m = path.position_m(high);
+        Some(GroundTouch {
+            fraction: high,
+            point_m,
+            normal: self.slope(point_m),
+            velocity_mps: path.velocity_mps(high),
+        })
+    }
+
+    /// The normal by differences over a metre; up where there are no neighbours.
+    fn slope(&self, at: DVec3) -> DVec3 {
+        let side = |x_m: f64, z_m: f64| {
+            let (ahead, behind) = (self.height_m(at.x + x_m, at.z + z_m)?, self.height_m(at.x - x_m, at.z - z_m)?);
+            Some(ahead - behind)
+        };
+        let (east, south) = (side(0.5, 0.0).unwrap_or(0.0), side(0.0, 0.5).unwrap_or(0.0));
+        DVec3::new(-east, 1.0, -south).normalize()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use terrain::{Grid, Ground, synthetic};
+
+    #[test]
+    fn a_closure_and_its_area_agree_where_the_ground_is_smooth() {
+        let grid = Grid::centred(200.0, 1, 1).unwrap();
+        // A plane: the closure's looks and the exact cast must find the same point.
+        let field = synthetic::from_fn(grid, |column, row| 10.0 * column as f32 - 4.0 * row as f32 + 300.0);
+        let area = Ground::new(Arc::new(field)).whole();
+        let of = area.clone();
+        let (exact, looked) = (SceneGround::from(area), SceneGround::heights(move |x_m, z_m| of.height_m(x_m, z_m)));
+        let path = StepPath::straight(DVec3::new(-900.0, 900.0, 700.0), DVec3::new(500.0, 100.0, -650.0), 1.0);
+        let (a, b) = (exact.touch(&path).unwrap(), looked.touch(&path).unwrap());
+        // Coordinates below 2^10 m: roundings of 2^-43 m, some ten of them, over the sine of the grazing angle (> 0.1).
+        assert!(a.point_m.distance(b.point_m) < 100.0 * 2f64.powi(-43), "{} {}", a.point_m, b.point_m);
+        assert!(a.normal.distance(b.normal) < 1e-9 && (a.fraction - b.fraction).abs() < 1e-13);
+    }
+
+    #[test]
+    fn void_stops_nothing_and_under_ground_is_met_at_once() {
+        let down = StepPath::straight(DVec3::Y * 50.0, DVec3::Y * -50.0, 0.1);
+        assert_eq!(SceneGround::void().touch(&down), None);
+        assert_eq!(SceneGround::heights(|_, _| Some(f64::NAN)).touch(&down), None);
+        let buried = SceneGround::heights(|_, _| Some(60.0)).touch(&down).unwrap();
+        assert_eq!((buried.fraction, buried.normal), (0.0, DVec3::Y));
+        let broken = StepPath { to_m: DVec3::NAN, ..down };
+        assert_eq!(SceneGround::heights(|_, _| Some(60.0)).touch(&broken), None);
+    }
+}

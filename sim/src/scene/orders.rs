@@ -1,0 +1,222 @@
+//! What commands do to a scene, and the record of those that were done.
+//!
+//! Invariant others rely on: a command is checked whole before anything changes; what is refused leaves no trace but an
+//! event, and that only if it had been scheduled.
+
+use super::body::{Body, Rig};
+use super::codec::{Coded, Reader};
+use super::event::Happening;
+use super::failure::{Armed, MOST_FAILURES, control_of};
+use super::gun::Burst;
+use super::shell::Shell;
+use super::surroundings::Surroundings;
+use super::target::TargetState;
+use super::{Command, Refused, Scene, Stamped, attitude, found, place, speed};
+use crate::aircraft::AircraftState;
+use crate::rigid::Model;
+use crate::snapshot::StableId;
+use glam::{DQuat, DVec3};
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// Most bursts at a time: guns of a scene that fire at once.
+const MOST_BURSTS: usize = 100_000;
+
+impl Scene {
+    /// Does a command now, between two steps.
+    ///
+    /// # Errors
+    /// [`Refused`] says what was expected and what was found; the scene is as it was.
+    pub fn order(&mut self, command: Command) -> Result<(), Refused> {
+        if !command.concerns_scene() {
+            return Ok(());
+        }
+        sound(&command)?;
+        self.apply(&command)?;
+        if let Some(record) = &mut self.record {
+            record.push(Stamped { step: self.clock.step(), command });
+        }
+        Ok(())
+    }
+
+    /// Does a command before the step that follows the given number of steps. Those for one step keep their order.
+    ///
+    /// Whether there is such an entity is seen when it is due; a refusal is then an event.
+    ///
+    /// # Errors
+    /// [`Refused`] if that step was taken already or a number of the command is none.
+    pub fn schedule(&mut self, stamped: Stamped) -> Result<(), Refused> {
+        if stamped.step < self.clock.step() {
+            let (expected, found) = (self.clock.step(), stamped.step);
+            return Err(Refused::new(format_args!("command: expected a step of {expected} or later, found {found}")));
+        }
+        sound(&stamped.command)?;
+        if stamped.command.concerns_scene() {
+            let place = self.pending.partition_point(|other| other.step <= stamped.step);
+            self.pending.insert(place, stamped);
+        }
+        Ok(())
+    }
+
+    /// Keeps from now on every command that is done, with its step.
+    pub fn start_record(&mut self) {
+        self.record = Some(Vec::new());
+    }
+
+    /// The commands since the record was started, in order, also those that were due and refused; scheduled on a scene as this one was then, they give
+    /// the same again.
+    pub fn record(&self) -> &[Stamped] {
+        self.record.as_deref().unwrap_or_default()
+    }
+
+    /// Commands that are not yet due.
+    pub fn pending(&self) -> &VecDeque<Stamped> {
+        &self.pending
+    }
+
+    /// Does what is due.
+    pub(super) fn obey(&mut self) {
+        while self.pending.front().is_some_and(|stamped| stamped.step <= self.clock.step()) {
+            let Some(Stamped { command, .. }) = self.pending.pop_front() else { return };
+            if let Err(why) = self.apply(&command) {
+                self.log.add(self.clock.time_s(), Happening::Refused { why: why.to_string() });
+            }
+            // Refused or not: a replay must refuse it again, as the event counts.
+            if let Some(record) = &mut self.record {
+                record.push(Stamped { step: self.clock.step(), command });
+            }
+        }
+    }
+
+    fn apply(&mut self, command: &Command) -> Result<(), Refused> {
+        match command {
+            Command::Pilot(command) => self.pilot(*command),
+            Command::Controls(controls) => self.controls = controls.checked(),
+            Command::Place(state) => self.put(**state),
+            Command::SeekTrack(distance_m) => self.seek(*distance_m),
+            Command::Date(date) => self.clock.set_date(*date),
+            Command::DayRate(rate) => self.clock.set_day_rate(*rate),
+            Command::Freeze(freeze) => self.freeze = *freeze,
+            Command::Reposition { id, position_m, velocity_mps, attitude } => {
+                self.reposition(*id, *position_m, *velocity_mps, *attitude)?;
+            }
+            Command::Wind(rows) => {
+                self.surroundings.wind = Surroundings::checked_wind(rows)?;
+                let models = self.catalogue.models.iter();
+                self.rigs = models.map(|named| Rig::new(&named.thing, &self.surroundings)).collect();
+            }
+            Command::Turbulence(sigma_mps) => {
+                self.surroundings.turbulence_mps = Surroundings::checked_turbulence(*sigma_mps)?;
+                for &(id, entity) in &self.bodies {
+                    let keys = self.turbulence_keys(id);
+                    if let Ok(mut body) = self.ecs.get::<&mut Body>(entity) {
+                        body.set_turbulence(*sigma_mps, &keys);
+                    }
+                }
+            }
+            Command::Control { id, control, value } => {
+                self.change_body(*id, |body, model| {
+                    let place = control_of(model, control)? as usize;
+                    let of = &model.controls[place];
+                    body.controls[place] = value.clamp(of.min, of.max);
+                    Ok(())
+                })?;
+            }
+            Command::Fuel { id, change } => {
+                let why = || Refused::new(format_args!("fuel: expected a body with fuel, found {} without", id.0));
+                self.change_body(*id, |body, _| body.tanks.as_mut().ok_or_else(why)?.change(*change))?;
+            }
+            Command::Fail { id, name, failure, in_steps } => {
+                let at_step = self.clock.step().saturating_add(*in_steps);
+                self.change_body(*id, |body, model| {
+                    let armed = Armed::new(name, failure, at_step, model)?;
+                    let others = body.failures.iter().filter(|other| other.name != *name).count();
+                    if others >= MOST_FAILURES {
+                        return Err(Refused::new(format_args!("failure: expected at most {MOST_FAILURES} of a body")));
+                    }
+                    body.failures.retain(|other| other.name != *name);
+                    body.failures.push(armed);
+                    Ok(())
+                })?;
+            }
+            Command::Clear { id, name } => {
+                self.change_body(*id, |body, _| {
+                    let place = body.failures.iter().position(|armed| armed.name == *name);
+                    let missing = || Refused::new(format_args!("failure: expected one of the body's, found {name}"));
+                    body.failures.remove(place.ok_or_else(missing)?);
+                    Ok(())
+                })?;
+            }
+            Command::Fire { owner, projectile, muzzle, rounds, per_minute } => {
+                let kind = self.catalogue.projectile(projectile)?;
+                if self.carriage(*owner).is_none() {
+                    let found = owner.0;
+                    return Err(Refused::new(format_args!(
+                        "fire.owner: expected an entity that can fire, found {found}"
+                    )));
+                }
+                if self.bursts.len() >= MOST_BURSTS {
+                    return Err(Refused::new(format_args!("fire: expected at most {MOST_BURSTS} bursts at a time")));
+                }
+                self.bursts.push(Burst::new(*owner, kind, *muzzle, *rounds, *per_minute, self.clock.time_s())?);
+            }
+            Command::CeaseFire { owner } => self.bursts.retain(|burst| burst.owner != *owner),
+        }
+        Ok(())
+    }
+
+    fn reposition(
+        &mut self,
+        id: StableId,
+        position_m: DVec3,
+        velocity_mps: DVec3,
+        given: DQuat,
+    ) -> Result<(), Refused> {
+        let (position_m, velocity_mps) = (place("position_m", position_m)?, speed("velocity_mps", velocity_mps)?);
+        let attitude = attitude("attitude", given)?;
+        if id == self.own_id {
+            let heading_rad = crate::frame::angles(attitude).heading_rad;
+            let level = AircraftState::level(position_m, heading_rad, velocity_mps.length());
+            self.put(AircraftState { velocity_mps, attitude, throttle: self.controls.throttle, ..level });
+        } else if let Some(entity) = found(&self.targets, id) {
+            if let Ok(mut target) = self.ecs.get::<&mut TargetState>(entity) {
+                target.reposition(position_m, attitude);
+            }
+            self.views.targets.take();
+        } else if let Some(entity) = found(&self.shells, id) {
+            if let Ok(mut shell) = self.ecs.get::<&mut Shell>(entity) {
+                shell.relocate(position_m, velocity_mps);
+            }
+            self.views.shells.take();
+        } else {
+            let planet = self.surroundings.planet();
+            self.change_body(id, |body, _| body.relocate(position_m, velocity_mps, attitude, DVec3::ZERO, &planet))?;
+        }
+        Ok(())
+    }
+
+    fn change_body(
+        &mut self,
+        id: StableId,
+        change: impl FnOnce(&mut Body, &Arc<Model>) -> Result<(), Refused>,
+    ) -> Result<(), Refused> {
+        let missing = || Refused::new(format_args!("id: expected a rigid body of the scene, found {}", id.0));
+        let entity = found(&self.bodies, id).ok_or_else(missing)?;
+        let mut body = self.ecs.get::<&mut Body>(entity).map_err(|_| missing())?;
+        let model = &self.catalogue.models[body.model as usize].thing;
+        change(&mut body, model)?;
+        self.views.bodies.take();
+        Ok(())
+    }
+}
+
+/// Refuses a command with a number that is not finite or a text that is too long: what a save would not read back.
+fn sound(command: &Command) -> Result<(), Refused> {
+    let mut bytes = Vec::new();
+    if command.concerns_scene() {
+        command.put(&mut bytes);
+        let mut reader = Reader::new(&bytes);
+        reader.take::<Command>().map_err(|error| Refused::new(format_args!("command: {}", error.why)))?;
+    }
+    Ok(())
+}

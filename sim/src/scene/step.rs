@@ -1,0 +1,210 @@
+//! One fixed step of a scene.
+//!
+//! In this order: commands that are due; the own aircraft; bodies, targets and shells, each by id; the rounds that leave
+//! during the step, which fly what is left of it. Owners are where they are at the moment that a round leaves; targets
+//! move during the step while shells are swept past them.
+//!
+//! Invariant others rely on: the cost of an entity does not depend on how many others there are, and no entity costs an
+//! allocation a step; only what strikes, fires or fails may.
+
+use super::body::{Body, Outcome};
+use super::event::Happening;
+use super::gun::Carriage;
+use super::shell::{Fate, Range, Shell};
+use super::target::TargetState;
+use super::{Freeze, Scene, SceneGround, found};
+use crate::ballistics::targets::Pose;
+use crate::snapshot::StableId;
+use glam::DVec3;
+
+/// A round that hit: the target, the owner and the owner's round.
+type Hit = (StableId, StableId, u64);
+
+impl Scene {
+    /// Takes one step. Pausing is the caller's: a clock that is paused gives no steps to take.
+    pub fn step(&mut self, ground: &SceneGround) {
+        self.settle(ground);
+        self.obey();
+        let (dt_s, from_s, date) = (self.clock.step_s(), self.clock.time_s(), self.clock.date());
+        self.clock.tick();
+        if !self.log.recent.is_empty() {
+            self.log.forget(from_s);
+        }
+        if self.freeze == Freeze::Total {
+            self.clock.set_date(date);
+            self.look_down(ground);
+            return;
+        }
+        let before: Vec<Option<Carriage>> = self.bursts.iter().map(|burst| self.carriage(burst.owner)).collect();
+        if self.freeze != Freeze::Flight {
+            self.step_own(ground.height_at(), dt_s);
+            self.step_bodies(ground, from_s, dt_s);
+        }
+        self.step_targets(ground, dt_s);
+        self.step_shells(ground, &before, from_s, dt_s);
+        self.look_down(ground);
+    }
+
+    /// Says that the ground is another than before: what stands on it takes its height anew before the next step.
+    pub fn ground_changed(&mut self) {
+        self.unsettled = true;
+    }
+
+    /// Puts targets on the ground that were not yet.
+    pub(super) fn settle(&mut self, ground: &SceneGround) {
+        if !std::mem::take(&mut self.unsettled) {
+            return;
+        }
+        for (_, entity) in &self.targets {
+            if let Ok(mut target) = self.ecs.get::<&mut TargetState>(*entity) {
+                target.settle(ground);
+            }
+        }
+        self.views.targets.take();
+    }
+
+    /// The pose of whoever may fire: the own aircraft, a body that flies, a target.
+    pub(super) fn carriage(&self, id: StableId) -> Option<Carriage> {
+        if id == self.own_id {
+            let own = self.aircraft();
+            return Some(Carriage {
+                position_m: own.position_m,
+                attitude: own.attitude,
+                velocity_mps: own.velocity_mps,
+                rates_radps: own.rates_radps,
+            });
+        }
+        if let Some(entity) = found(&self.bodies, id) {
+            let body = self.ecs.get::<&Body>(entity).ok()?;
+            return body.ended.is_none().then(|| body.carriage(&self.surroundings.planet()));
+        }
+        let target = self.ecs.get::<&TargetState>(found(&self.targets, id)?).ok()?;
+        Some(Carriage {
+            position_m: target.position_m,
+            attitude: target.attitude,
+            velocity_mps: target.velocity_mps,
+            rates_radps: DVec3::ZERO,
+        })
+    }
+
+    fn step_bodies(&mut self, ground: &SceneGround, from_s: f64, dt_s: f64) {
+        if self.bodies.is_empty() {
+            return;
+        }
+        self.views.bodies.take();
+        let (step, freeze, log) = (self.clock.step() - 1, self.freeze, &mut self.log);
+        let mut all = self.ecs.view_mut::<&mut Body>();
+        for &(id, entity) in &self.bodies {
+            let Some(body) = all.get_mut(entity).filter(|body| body.ended.is_none()) else { continue };
+            if !body.failures.is_empty() {
+                body.set_in(step, |name| log.add(from_s, Happening::Failure { id, name: name.to_owned() }));
+            }
+            match body.step(&mut self.rigs[body.model as usize], ground, freeze, dt_s) {
+                Outcome::Flies => {}
+                Outcome::OutOfFuel => log.add(from_s + dt_s, Happening::OutOfFuel { id }),
+                Outcome::Ended(reason, touch) => {
+                    let (point_m, normal, velocity_mps) = (touch.point_m, touch.normal, touch.velocity_mps);
+                    let crash = Happening::Crash { id, reason, point_m, normal, velocity_mps };
+                    log.add(from_s + touch.fraction * dt_s, crash);
+                }
+            }
+        }
+    }
+
+    fn step_targets(&mut self, ground: &SceneGround, dt_s: f64) {
+        if self.targets.is_empty() {
+            return;
+        }
+        let mut moved = std::mem::take(&mut self.swept_anew);
+        let mut all = self.ecs.view_mut::<&mut TargetState>();
+        for (&(_, entity), swept) in self.targets.iter().zip(&mut self.swept) {
+            let Some(target) = all.get_mut(entity) else { continue };
+            // What moved in the step before, or was put elsewhere since, must not be swept along that way again.
+            let now = target.pose();
+            moved |= swept.from != now || swept.to != now;
+            (swept.from, swept.to) = (now, now);
+            if target.is_restless() {
+                // A turn at a waypoint is at once: the new attitude holds for the whole step.
+                target.step(ground, dt_s);
+                swept.to = target.pose();
+                swept.from = Pose { position_m: now.position_m, ..swept.to };
+                moved = true;
+            }
+        }
+        if moved {
+            self.views.targets.take();
+            self.grid.rebuild(&self.swept);
+        }
+    }
+
+    fn step_shells(&mut self, ground: &SceneGround, before: &[Option<Carriage>], from_s: f64, dt_s: f64) {
+        if self.shells.is_empty() && self.bursts.is_empty() {
+            return;
+        }
+        self.views.shells.take();
+        let after: Vec<Option<Carriage>> = self.bursts.iter().map(|burst| self.carriage(burst.owner)).collect();
+        let projectiles = &self.catalogue.projectiles;
+        let range = Range::new(projectiles, &self.surroundings, ground, &self.swept, &self.grid, dt_s);
+        let (mut hits, mut gone, mut new): (Vec<Hit>, Vec<hecs::Entity>, Vec<(StableId, Shell)>) = Default::default();
+        let log = &mut self.log;
+        // Whether it still flies.
+        let mut fly = |id: StableId, shell: &mut Shell, from: f64| match range.fly(id, shell, from) {
+            Fate::Flies => true,
+            Fate::Struck(strike, fraction) => {
+                if let Some(target) = strike.target {
+                    hits.push((target, strike.owner, strike.round));
+                }
+                log.add(from_s + fraction * dt_s, Happening::Impact(strike));
+                false
+            }
+            Fate::Lost(reason) => {
+                log.add(from_s + dt_s, Happening::Lost { id, reason });
+                false
+            }
+        };
+        let mut all = self.ecs.view_mut::<&mut Shell>();
+        self.shells.retain(|&(id, entity)| {
+            let flies = all.get_mut(entity).is_some_and(|shell| fly(id, shell, 0.0));
+            if !flies {
+                gone.push(entity);
+            }
+            flies
+        });
+        let (until_s, seed) = (from_s + dt_s, self.surroundings.seed);
+        for ((burst, before), after) in self.bursts.iter_mut().zip(before).zip(&after) {
+            let (Some(before), Some(after)) = (before, after) else {
+                burst.end();
+                continue;
+            };
+            while let Some(due_s) = burst.next_before(until_s) {
+                let fraction = ((due_s - from_s) / dt_s).clamp(0.0, 1.0);
+                let round = self.fired.entry(burst.owner).or_insert(0);
+                let shot = burst.shot(seed, *round, before, after, fraction);
+                let (id, mut shell) =
+                    (StableId(self.next_id), Shell::new(burst.projectile, burst.owner, *round, &shot));
+                *round += 1;
+                self.next_id += 1;
+                if fly(id, &mut shell, fraction) {
+                    new.push((id, shell));
+                }
+            }
+        }
+        self.bursts.retain(|burst| !burst.is_over());
+        for entity in gone {
+            // Listed, so there.
+            let _ = self.ecs.despawn(entity);
+        }
+        for (id, shell) in new {
+            let entity = self.ecs.spawn((id, shell));
+            self.shells.push((id, entity));
+        }
+        for (target, owner, round) in hits {
+            let entity = found(&self.targets, target);
+            if let Some(mut target) = entity.and_then(|entity| self.ecs.get::<&mut TargetState>(entity).ok()) {
+                target.hits = target.hits.saturating_add(1);
+                target.last_round = Some((owner, round));
+                self.views.targets.take();
+            }
+        }
+    }
+}
