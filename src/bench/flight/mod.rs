@@ -5,8 +5,9 @@
 //! has an engine's inside, fuel, gear and a control system, and takes one evaluation a step where ours takes four. A shell's
 //! yardstick is JSBSim's bomb, and a point mass written out here. All take turns in every round.
 //!
-//! `entities` of a scene are to be measured in a file of their own beside this one.
+//! Scenes of many entities stand in [`entities`].
 
+mod entities;
 mod jsbsim;
 mod shell;
 mod swept;
@@ -38,13 +39,15 @@ pub struct Load {
     pub yardstick_steps: u32,
     /// Rounds that count.
     pub rounds: u32,
+    /// Steps of a scene of ten thousand in a round.
+    pub scene_steps: u32,
     /// Whether to ask JSBSim.
     pub ask: bool,
 }
 
 impl Load {
     /// What the program measures with.
-    pub const FULL: Self = Self { steps: 50_000, yardstick_steps: 5_000, rounds: ROUNDS, ask: true };
+    pub const FULL: Self = Self { steps: 50_000, yardstick_steps: 5_000, rounds: ROUNDS, scene_steps: 4, ask: true };
 }
 
 /// Results, and what could not be compared.
@@ -81,9 +84,11 @@ pub fn bench(area: &Area, load: Load) -> Result<Flown, Failure> {
     let yardstick = if load.ask { Jsbsim::start() } else { Err("not asked for".to_owned()) };
     let mut yardstick = yardstick.map_err(|reason| Skipped { name: "flight beside JSBSim".into(), reason });
     let mut times = Times::default();
+    let mut scenes = entities::Scenes::new(area)?;
     for round in 0..WARM_UPS + load.rounds {
         if round == WARM_UPS {
             times = Times::default();
+            scenes.forget();
             yardstick.iter_mut().for_each(|jsbsim| jsbsim.nothing_ns.clear());
         }
         if let Ok(jsbsim) = &mut yardstick {
@@ -107,8 +112,11 @@ pub fn bench(area: &Area, load: Load) -> Result<Flown, Failure> {
         let (swept_ns, segment_ns) = swept::each_ns(area, &paths);
         times.swept.push(swept_ns);
         times.segment.push(segment_ns);
+        scenes.round(load.scene_steps);
     }
-    Ok(told(&times, yardstick))
+    let mut told = told(&times, yardstick);
+    told.results.extend(scenes.results());
+    Ok(told)
 }
 
 fn told(times: &Times, yardstick: Result<Jsbsim, Skipped>) -> Flown {
@@ -194,7 +202,8 @@ mod tests {
     #[test]
     fn every_result_has_a_name_of_its_own() {
         let area = Ground::new(Arc::new(synthetic::ridges(Grid::centred(200.0, 4, 4).unwrap(), 5))).whole();
-        let flown = bench(&area, Load { steps: 50, yardstick_steps: 5, rounds: 2, ask: false }).unwrap();
+        let flown =
+            bench(&area, Load { steps: 50, yardstick_steps: 5, rounds: 2, scene_steps: 1, ask: false }).unwrap();
         assert!(flown.skipped.len() == 1 && flown.results.len() >= 6);
         for (at, result) in flown.results.iter().enumerate() {
             assert!(result.ours > 0.0 && result.rounds == 2, "{result:?}");
