@@ -33,6 +33,8 @@ impl Jsbsim {
         let shown = python.display().to_string();
         let mut child = Command::new(&python)
             .args(["-c", SCRIPT])
+            // What its models write is no one's business here.
+            .current_dir(std::env::temp_dir())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

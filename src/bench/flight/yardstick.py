@@ -16,6 +16,8 @@ def light():
     f = jsbsim.FGFDMExec(None)
     f.set_debug_level(0)
     f.load_model("c172x")
+    # The model writes a file a run otherwise.
+    f.disable_output()
     f.set_dt(1 / RATE_HZ)
     f["ic/h-sl-ft"], f["ic/vc-kts"] = 3000, 100
     f.run_ic()
@@ -30,6 +32,7 @@ def bomb():
     f = jsbsim.FGFDMExec(None)
     f.set_debug_level(0)
     f.load_model("mk82")
+    f.disable_output()
     f.set_dt(1 / RATE_HZ)
     start(f)
     return f
