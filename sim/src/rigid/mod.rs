@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `quantity.rs` | what coefficients may depend on |
 //! | `model_file.rs` | `M.toml` as it is written |
+//! | `model_checks.rs` | every check on it |
 //! | `model.rs` | the checked model |
 //! | `aero.rs` | coefficients, forces and moments |
 //! | `links.rs` | DAVE-ML files bound to the model and to each other |
@@ -23,6 +24,7 @@ pub mod column;
 pub mod inputs;
 pub mod links;
 pub mod model;
+mod model_checks;
 mod model_file;
 pub mod motion;
 pub mod quantity;
