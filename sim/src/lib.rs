@@ -4,6 +4,11 @@
 //! a step has one fixed length; what a step gives depends only on the state and the commands before it, so two runs with
 //! the same inputs give the same [`Snapshot::hash`]. Bad input is refused at the edge ([`input`]), never stepped.
 //!
+//! Two things are built on one core ([`integrate`], [`planet`], [`atmosphere`], [`wind`], [`table`]): flights and shots from
+//! files, over any Earth, for proofs and long ranges ([`rigid`], [`ballistics`], [`daveml`], [`case`]); and scenes of many
+//! entities over a world's plane, for the picture ([`scene`]). The core's flat frame is north, east, down; [`frame`] turns
+//! it into the world's.
+//!
 //! The ground of a scene is a [`SceneGround`]: exact where it is made of an area of posts, else a function of plan
 //! position, [`HeightAt`], that answers `None` where there is no data.
 #![forbid(unsafe_code)]
