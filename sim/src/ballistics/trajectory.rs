@@ -1,6 +1,6 @@
 //! One shot from the muzzle to its end, as rows.
 //!
-//! Steps lie on a grid of `run.dt_s` (or [`STEP_S`](super::launch::STEP_S)) from the muzzle, cut where the thrust of a burn has a row. A row or an end
+//! Steps lie on a grid of `run.dt_s` (or [`STEP_S`]) from the muzzle, cut where the thrust of a burn has a row. A row or an end
 //! within a step is found by taking a shorter step from the step's own start, so it is as exact as the integrator and lies
 //! on no chord. Rows are at the muzzle, at each multiple of `shot.step_m` of range or `shot.step_s` (else
 //! `run.output_dt_s`) of time, and at the end, in the order of time.

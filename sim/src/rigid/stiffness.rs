@@ -7,7 +7,7 @@
 //! [`STEPS_A_MODE`] steps. In between the mode grows with density times speed, as aerodynamic modes do.
 //!
 //! Spin is no mode: a quaternion is turned by so many radians a step, and the error of fourth order grows with them. A
-//! piece of a step turns the body by at most [`MOST_TURN_RAD`].
+//! piece of a step turns the body by at most a quarter radian.
 //!
 //! Source: I. Gelfand, Normierte Ringe, 1941 (spectral radius); stability limits: see [`crate::integrate`].
 
