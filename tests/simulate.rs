@@ -117,6 +117,29 @@ fn a_flight_ends_on_the_ground_that_height_gives() {
     // The cubic of a step of 1/120 s is nanometres off the flight; a map of 100 km to and fro as much.
     assert!((under - last("altitude_m")).abs() < 1e-6, "{under} {}", last("altitude_m"));
     assert!(last("agl_m").abs() < 1e-6);
+
+    // A world that is named is there, whether or not a stop asks for its ground.
+    let unasked = std::fs::read_to_string(&case).unwrap().replace("stop = [\"ground\"]\n", "");
+    std::fs::write(folder.join("c.toml"), unasked).unwrap();
+    let output = simulate(&folder, &["--model", &model, "--case", "c.toml", "--json"]);
+    let same: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&same["event"], &same["time_s"]), (&flown["event"], &flown["time_s"]));
+}
+
+#[test]
+fn nothing_that_is_read_is_written_over() {
+    let folder = folder("over");
+    let copy =
+        |name: &str| std::fs::copy(format!("{ASSETS}{name}"), folder.join(name.rsplit('/').next().unwrap())).unwrap();
+    copy("models/sphere.toml");
+    copy("cases/drop.toml");
+    for out in ["sphere.toml", "./drop.toml"] {
+        let output = simulate(&folder, &["--model", "sphere.toml", "--case", "drop.toml", "--out", out]);
+        let error = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(error.contains("which is read"), "{error}");
+    }
+    assert!(simulate(&folder, &["--model", "sphere.toml", "--case", "drop.toml", "--out", "o.csv"]).status.success());
 }
 
 #[test]

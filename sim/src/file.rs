@@ -2,7 +2,8 @@
 //!
 //! Invariant others rely on: no number that comes out of here is NaN or infinite, and no key was passed over.
 
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, Error as _};
+use serde::{Deserialize, Deserializer};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use toml::Value;
@@ -79,6 +80,41 @@ pub fn toml_text<T: DeserializeOwned>(file: &Path, text: &str) -> Result<T, File
     })
 }
 
+/// A list of exactly so many things: a longer one is refused too, which serde's arrays do not do.
+fn whole<'de, D: Deserializer<'de>, T: Deserialize<'de>, const N: usize>(from: D) -> Result<[T; N], D::Error> {
+    let all = Vec::<T>::deserialize(from)?;
+    let found = all.len();
+    all.try_into().map_err(|_| D::Error::custom(format_args!("expected a list of {N}, found {found}")))
+}
+
+/// Exactly so many numbers; for `deserialize_with`.
+pub(crate) fn exactly<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result<[f64; N], D::Error> {
+    whole(from)
+}
+
+/// The same where the key may be missing.
+pub(crate) fn exactly_if<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result<Option<[f64; N]>, D::Error> {
+    whole(from).map(Some)
+}
+
+/// A square of numbers.
+pub(crate) fn square<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result<[[f64; N]; N], D::Error> {
+    whole::<D, Exactly<N>, N>(from).map(|rows| rows.map(|row| row.0))
+}
+
+/// Any number of rows of exactly so many numbers.
+pub(crate) fn rows<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result<Vec<[f64; N]>, D::Error> {
+    Vec::<Exactly<N>>::deserialize(from).map(|rows| rows.into_iter().map(|row| row.0).collect())
+}
+
+struct Exactly<const N: usize>([f64; N]);
+
+impl<'de, const N: usize> Deserialize<'de> for Exactly<N> {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        exactly(from).map(Self)
+    }
+}
+
 /// The first number that is not finite, with the way to it.
 fn not_finite(key: &str, value: &Value) -> Option<(String, f64)> {
     match value {
@@ -98,6 +134,9 @@ mod tests {
     struct Sample {
         #[allow(dead_code)]
         rows: Vec<f64>,
+        #[allow(dead_code)]
+        #[serde(default, deserialize_with = "exactly_if")]
+        pair: Option<[f64; 2]>,
     }
 
     #[test]
@@ -108,6 +147,8 @@ mod tests {
         assert!(read("rows = [-inf]").contains("found -inf"));
         assert!(read("rows = []\nrow = 3").contains("row"), "the unknown key is named");
         assert!(read("rows = [1.0").contains("line 1"));
+        assert!(read("rows = []\npair = [1, 2, 3]").contains("expected a list of 2, found 3"));
+        assert!(read("rows = []\npair = [1]").contains("expected a list of 2, found 1"));
         assert!(text(Path::new("no such file")).unwrap_err().to_string().contains("no such file"));
     }
 }

@@ -355,3 +355,25 @@ fn a_stop_that_holds_at_the_start_is_told_in_the_only_row() {
     assert_eq!(ending, Ending::Stop("altitude_m=5".to_owned()));
     assert!((last(&columns, "altitude_m") - 5.0).abs() < 1e-9);
 }
+
+#[test]
+fn the_angle_of_attack_that_trim_finds_is_the_one_that_is_flown() {
+    let rc = || model("models/rc_trainer.toml");
+    for (ned, wind) in [
+        ([15.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
+        ([14.0, 0.0, 0.3], [-3.0, 1.5, 0.5]),
+        ([15.0, 2.0, 0.0], [2.0, 0.0, -0.5]),
+    ] {
+        let [north, east, up] = wind;
+        let text = format!(
+            "[initial]\naltitude_m = 200\nvelocity_ned_mps = {ned:?}\nrates_frame = \"local\"\n\
+             [[wind]]\nnorth_mps = {north:?}\neast_mps = {east:?}\nup_mps = {up:?}\n\
+             [trim]\nvary = [\"elevator_trim_deg\", \"throttle_norm\", \"alpha_deg\"]\n[run]\nseconds = 1\ndt_s = 0.01\n"
+        );
+        let flight = Simulation::new(rc(), &case(&text), Inputs::default(), None).unwrap();
+        let found = &flight.trimmed.as_ref().unwrap().values[2];
+        let flown = flight.row()[sim::rigid::column::COLUMNS.iter().position(|name| *name == "alpha_deg").unwrap()];
+        // Both are angles of a hundredth of a radian, by two ways of a dozen roundings.
+        assert!(found.0 == "alpha_deg" && (found.1 - flown).abs() < 1e-11, "{found:?} {flown}");
+    }
+}

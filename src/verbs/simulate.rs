@@ -36,6 +36,7 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), Failure> {
     if let Some(file) = &args.inputs {
         inputs.notes.iter().for_each(|note| output::tell(format_args!("poligon: {}: {note}", file.display())));
     }
+    output::not_over(args.out.as_deref(), &model.daveml_files().collect::<Vec<_>>())?;
     let wrong = |why: String| Failure::Misuse(FileError::new(&args.case, why).to_string());
     let Some(seconds) = case.run.seconds else {
         return Err(wrong("run.seconds: expected how long to fly, found none".to_owned()));
@@ -54,13 +55,11 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), Failure> {
     if case.run.world.is_some() && start_agl_m < 0.0 {
         output::tell(format_args!("poligon: the start lies {:.1} m under the ground", -start_agl_m));
     }
-    let stops: Vec<Stop> = case
-        .run
-        .stop
-        .iter()
-        .map(|words| Stop::parse(words, &flight.motion))
-        .collect::<Result<_, _>>()
-        .map_err(wrong)?;
+    // A world that is named is there.
+    let ground = case.run.world.is_some().then_some("ground");
+    let words = case.run.stop.iter().map(String::as_str).chain(ground);
+    let stops: Vec<Stop> =
+        words.map(|words| Stop::parse(words, &flight.motion)).collect::<Result<_, _>>().map_err(wrong)?;
     let dt_s = case.run.dt_s.unwrap_or(seconds);
 
     let mut text = format!("{},event\n", names.join(","));

@@ -15,7 +15,7 @@ use sim::ballistics::trajectory::{FLOOR, Trajectory, TrajectoryError, fly};
 use sim::case::Case;
 use sim::file::FileError;
 use sim::world_ground::WorldGround;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Runs the verb.
 ///
@@ -26,6 +26,7 @@ pub fn run(args: &TrajectoryArgs, output: Output) -> Result<(), Failure> {
     let misuse = |error: FileError| Failure::Misuse(error.to_string());
     let projectile = Projectile::read(&args.projectile).map_err(misuse)?;
     let case = Case::read(&args.case).map_err(misuse)?;
+    output::not_over(args.out.as_deref(), &projectile.drag_file.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     let world = open_world::of_case(&case)?;
     let ground = world.as_ref().map(|world| WorldGround::new(world, &case));
     if let Some(ground) = &ground {

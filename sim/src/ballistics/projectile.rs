@@ -39,6 +39,8 @@ pub struct Projectile {
     pub mass_kg: f64,
     /// Diameter, metres; only some ways to give the drag need it.
     pub diameter_m: Option<f64>,
+    /// The file of its drag curve, if that is its own.
+    pub drag_file: Option<PathBuf>,
     /// Its drag; none in a vacuum of its own.
     pub drag: Option<Drag>,
     /// Its spin.
@@ -81,7 +83,7 @@ struct ProjectileFile {
     #[serde(default)]
     interpolation: InterpolationName,
     spin: Option<Spin>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "file::rows")]
     burn: Vec<[f64; 2]>,
 }
 
@@ -118,6 +120,7 @@ impl Projectile {
             file: file.to_owned(),
             mass_kg: raw.mass_kg,
             diameter_m: raw.diameter_m,
+            drag_file: raw.drag.ends_with(".csv").then(|| raw.beside(file)),
             drag,
             spin: raw.spin,
             burn: raw.burn,
@@ -186,8 +189,12 @@ impl ProjectileFile {
             let why = format!("drag: expected one of {names}, none or a file that ends in .csv, found {found:?}");
             return Err(FileError::new(file, why));
         }
-        let beside = file.parent().map_or_else(|| PathBuf::from(&self.drag), |folder| folder.join(&self.drag));
-        DragCurve::read(&beside, interpolation).map(Some)
+        DragCurve::read(&self.beside(file), interpolation).map(Some)
+    }
+
+    /// The file that `drag` names, beside the projectile's.
+    fn beside(&self, file: &Path) -> PathBuf {
+        file.parent().map_or_else(|| PathBuf::from(&self.drag), |folder| folder.join(&self.drag))
     }
 
     /// Which of the four ways are used.

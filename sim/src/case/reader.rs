@@ -129,10 +129,15 @@ struct InitialFile {
     altitude_m: Option<f64>,
     north_m: Option<f64>,
     east_m: Option<f64>,
+    #[serde(default, deserialize_with = "crate::file::exactly_if")]
     velocity_ned_mps: Option<[f64; 3]>,
+    #[serde(default, deserialize_with = "crate::file::exactly_if")]
     velocity_body_mps: Option<[f64; 3]>,
+    #[serde(default, deserialize_with = "crate::file::exactly_if")]
     attitude_deg: Option<[f64; 3]>,
+    #[serde(default, deserialize_with = "crate::file::exactly_if")]
     quaternion: Option<[f64; 4]>,
+    #[serde(default, deserialize_with = "crate::file::exactly_if")]
     rates_degps: Option<[f64; 3]>,
     rates_frame: Option<RatesFrame>,
 }

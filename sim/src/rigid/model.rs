@@ -196,6 +196,22 @@ impl Model {
         Ok(model)
     }
 
+    /// The DAVE-ML files of the model.
+    pub fn daveml_files(&self) -> impl Iterator<Item = &Path> {
+        self.sources.iter().map(|source| source.file.as_path())
+    }
+
+    /// The same model without the places of its files, only their names: what it is made of, wherever it lies.
+    #[must_use]
+    pub fn placeless(&self) -> Self {
+        let mut model = self.clone();
+        model.file = PathBuf::new();
+        for source in &mut model.sources {
+            source.file = source.file.file_name().map(PathBuf::from).unwrap_or_default();
+        }
+        model
+    }
+
     /// Whether a DAVE-ML file of the model has such a variable.
     pub fn has_variable(&self, name: &str) -> bool {
         self.sources.iter().any(|source| source.document.variable(name).is_ok())

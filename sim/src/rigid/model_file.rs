@@ -51,8 +51,9 @@ fn in_order<'de, D: Deserializer<'de>>(table: D) -> Result<Vec<(String, ControlF
 #[serde(deny_unknown_fields)]
 pub(super) struct BodyFile {
     pub mass_kg: f64,
+    #[serde(deserialize_with = "crate::file::square")]
     pub inertia_kgm2: [[f64; 3]; 3],
-    #[serde(default)]
+    #[serde(default, deserialize_with = "crate::file::exactly")]
     pub cg_m: [f64; 3],
     pub never_exceed_mps: Option<f64>,
 }
@@ -63,6 +64,7 @@ pub(super) struct ReferenceFile {
     pub area_m2: Option<f64>,
     pub span_m: Option<f64>,
     pub chord_m: Option<f64>,
+    #[serde(default, deserialize_with = "crate::file::exactly_if")]
     pub moment_point_m: Option<[f64; 3]>,
 }
 
@@ -145,9 +147,10 @@ pub(super) enum OutsideFile {
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
 pub(super) struct ThrustFile {
+    #[serde(default, deserialize_with = "crate::file::exactly_if")]
     pub force_N: Option<[f64; 3]>,
     pub table: Option<String>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "crate::file::exactly_if")]
     pub at_m: Option<[f64; 3]>,
     #[serde(default)]
     pub times: Vec<String>,

@@ -198,12 +198,23 @@ impl Problem<'_> {
         }
     }
 
-    /// Angle of the way through the air over the horizon, radians.
-    fn air_path_rad(&self, motion: &RigidMotion, velocity: &Velocity) -> f64 {
+    /// The pitch at which the angle of attack is a given one, at the roll and yaw of `angles`.
+    fn pitch_rad(&self, motion: &RigidMotion, velocity: &Velocity, angles: [f64; 3], alpha_rad: f64) -> f64 {
         let (Velocity::Ned(ned) | Velocity::Body(ned)) = *velocity;
         let altitude_m = self.initial.flat_m.map_or(self.initial.place.altitude_m, |at| -at.z);
         let air = ned - motion.wind.ned_mps(altitude_m);
-        (-air.z).atan2(air.x.hypot(air.y))
+        let [roll, _, yaw] = angles;
+        let mut pitch = alpha_rad + (-air.z).atan2(air.x.hypot(air.y));
+        for _ in 0..30 {
+            let body = start::ned_from_body(&Attitude::Angles([roll, pitch, yaw])).inverse() * air;
+            let off = alpha_rad - body.z.atan2(body.x);
+            // A step of pitch is one of the angle of attack, about the cosine of the roll of it: this settles.
+            pitch += off;
+            if off.abs() < 1e-15 {
+                break;
+            }
+        }
+        pitch
     }
 
     fn scale(&self, motion: &RigidMotion, unknown: Unknown) -> f64 {
@@ -221,16 +232,19 @@ impl Problem<'_> {
     fn apply(&self, motion: &mut RigidMotion, x: &[f64]) -> Initial {
         let mut angles = self.angles;
         let mut initial = *self.initial;
+        let mut alpha_rad = None;
         for (unknown, value) in self.unknowns.iter().zip(x) {
             match unknown {
                 Unknown::Control(place) => motion.controls[*place] = *value,
                 Unknown::Roll => angles[0] = *value,
                 Unknown::Pitch => angles[1] = *value,
                 Unknown::Yaw => angles[2] = *value,
-                // Level wings: the angle of attack and the climb through the air make the pitch.
-                Unknown::Alpha => angles[1] = *value + self.air_path_rad(motion, &initial.velocity),
+                Unknown::Alpha => alpha_rad = Some(*value),
                 Unknown::Speed => initial.velocity = at_speed(&initial.velocity, *value),
             }
+        }
+        if let Some(alpha_rad) = alpha_rad {
+            angles[1] = self.pitch_rad(motion, &initial.velocity, angles, alpha_rad);
         }
         initial.attitude = Attitude::Angles(angles);
         initial

@@ -199,6 +199,7 @@ impl Body {
                 self.failures[place].fault = Fault::Stuck(control, held);
             }
             self.failures[place].active = true;
+            self.look_anew();
             told(&self.failures[place].name);
         }
     }
@@ -252,6 +253,11 @@ impl Body {
         self.pieces = stiffness::pieces(Integrator::Rk4, lambda, spin, dt_s).ok_or(EndReason::Stiff)?;
         self.look_in = STEPS_A_LOOK;
         Ok(())
+    }
+
+    /// Takes the fastest mode anew before the next step: something may have changed it.
+    pub fn look_anew(&mut self) {
+        (self.looks, self.look_in) = (0, 0);
     }
 
     /// Spreads the looks of bodies that were added together over steps: one body in 16 looks at a time.

@@ -46,9 +46,8 @@ impl Catalogue {
     /// # Errors
     /// [`Refused`] if the name is taken or too long.
     pub fn add_model(&mut self, name: &str, model: Model) -> Result<(), Refused> {
-        let mut nameless = model.clone();
-        nameless.file = PathBuf::new();
-        add(&mut self.models, "model", name, Arc::new(model), fingerprint(&nameless))
+        let print = fingerprint(&model.placeless());
+        add(&mut self.models, "model", name, Arc::new(model), print)
     }
 
     /// Adds a projectile.
@@ -56,7 +55,7 @@ impl Catalogue {
     /// # Errors
     /// [`Refused`] if the name is taken or too long.
     pub fn add_projectile(&mut self, name: &str, projectile: Projectile) -> Result<(), Refused> {
-        let nameless = Projectile { file: PathBuf::new(), ..projectile.clone() };
+        let nameless = Projectile { file: PathBuf::new(), drag_file: None, ..projectile.clone() };
         add(&mut self.projectiles, "projectile", name, Arc::new(projectile), fingerprint(&nameless))
     }
 
@@ -67,21 +66,6 @@ impl Catalogue {
     pub fn add_shape(&mut self, name: &str, shape: Shape) -> Result<(), Refused> {
         let print = fingerprint(&shape);
         add(&mut self.shapes, "shape", name, shape, print)
-    }
-
-    /// The name of a model by its place, as snapshots give it.
-    pub fn model_name(&self, place: u32) -> Option<&str> {
-        self.models.get(place as usize).map(|named| named.name.as_str())
-    }
-
-    /// The name of a projectile by its place.
-    pub fn projectile_name(&self, place: u32) -> Option<&str> {
-        self.projectiles.get(place as usize).map(|named| named.name.as_str())
-    }
-
-    /// The name of a shape by its place.
-    pub fn shape_name(&self, place: u32) -> Option<&str> {
-        self.shapes.get(place as usize).map(|named| named.name.as_str())
     }
 
     pub(super) fn model(&self, name: &str) -> Result<u32, Refused> {
@@ -160,5 +144,27 @@ mod tests {
         let prints: Vec<u64> = catalogue.prints().map(|(_, _, print)| print).collect();
         assert_ne!(prints[0], prints[1]);
         assert!(catalogue.shape("cube").unwrap_err().to_string().contains("expected one of [ball, other], found cube"));
+    }
+
+    #[test]
+    fn a_daveml_model_has_one_fingerprint_wherever_and_however_often_it_is_read() {
+        let dml = r#"<DAVEfunc xmlns="http://daveml.org/2010/DAVEML"><fileHeader name="x"/>
+            <variableDef name="angleOfAttack" varID="a" units="deg"><isInput/></variableDef>
+            <variableDef name="k" varID="k" units="nd" initialValue="0.1"/>
+            <variableDef name="totalCoefficientOfLift" varID="cl" units="nd"><calculation><math>
+            <apply><times/><ci>k</ci><ci>a</ci></apply></math></calculation><isOutput/></variableDef></DAVEfunc>"#;
+        let text = "[body]\nmass_kg = 1\ninertia_kgm2 = [[1,0,0],[0,1,0],[0,0,1]]\n[reference]\narea_m2 = 1\n\
+                    [[daveml]]\nfile = \"wing.dml\"\n";
+        let print = |folder: &str, dml: &str| {
+            let folder = std::env::temp_dir().join(format!("poligon-print-{}-{folder}", std::process::id()));
+            std::fs::create_dir_all(&folder).unwrap();
+            std::fs::write(folder.join("wing.dml"), dml).unwrap();
+            let model = Model::from_text(&folder.join("m.toml"), text).unwrap();
+            std::fs::remove_dir_all(&folder).unwrap();
+            fingerprint(&model.placeless())
+        };
+        let first = print("a", dml);
+        assert!((0..8).all(|_| print("a", dml) == first) && print("b", dml) == first);
+        assert_ne!(print("a", &dml.replace("0.1", "0.2")), first);
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! Rounds of a burst leave at equal times, also between two steps: the owner is then between its two poses, and the
 //! shell flies the rest of the step. Direction and speed are spread by normal numbers of the stream (seed of the
-//! scenario, owner, round), so no other gun, and no order of firing, changes a shot.
+//! scenario, owner, round), so no other owner's firing changes a shot; two bursts of
+//! one owner share its rounds, in the order in which they leave.
 //!
 //! Body axes for muzzles (forward, right, down; of a target, its shape's axes), world axes outside; metres, seconds.
 
@@ -22,7 +23,7 @@ const MOST_OFFSET_M: f64 = 1_000.0;
 /// Where and how rounds leave.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Muzzle {
-    /// From the owner's reference point, metres, its axes.
+    /// From the owner's reference point (of a rigid body its centre of gravity), metres, its axes.
     pub offset_m: DVec3,
     /// Direction of the bore, its axes; taken at length 1.
     pub direction: DVec3,
@@ -142,6 +143,11 @@ impl Burst {
             return Err(Refused::new("burst: expected a rate of fire and rounds that can be"));
         }
         Ok(())
+    }
+
+    /// Lets time pass without it.
+    pub fn wait(&mut self, dt_s: f64) {
+        self.first_s += dt_s;
     }
 
     /// Takes back the rounds that are left.

@@ -1,7 +1,7 @@
 //! What commands do to a scene, and the record of those that were done.
 //!
-//! Invariant others rely on: a command is checked whole before anything changes; what is refused leaves no trace but an
-//! event, and that only if it had been scheduled.
+//! Invariant others rely on: a command is checked whole before anything changes; what is refused changes nothing. If it
+//! had been scheduled, an event tells it, and it stands in the record.
 
 use super::body::{Body, Rig};
 use super::codec::{Coded, Reader};
@@ -79,7 +79,7 @@ impl Scene {
         while self.pending.front().is_some_and(|stamped| stamped.step <= self.clock.step()) {
             let Some(Stamped { command, .. }) = self.pending.pop_front() else { return };
             if let Err(why) = self.apply(&command) {
-                self.log.add(self.clock.time_s(), Happening::Refused { why: why.to_string() });
+                self.log.add(self.clock.time_s(), Happening::Refused { why: shown(&why) });
             }
             // Refused or not: a replay must refuse it again, as the event counts.
             if let Some(record) = &mut self.record {
@@ -104,6 +104,11 @@ impl Scene {
                 self.surroundings.wind = Surroundings::checked_wind(rows)?;
                 let models = self.catalogue.models.iter();
                 self.rigs = models.map(|named| Rig::new(&named.thing, &self.surroundings)).collect();
+                for &(_, entity) in &self.bodies {
+                    if let Ok(mut body) = self.ecs.get::<&mut Body>(entity) {
+                        body.look_anew();
+                    }
+                }
             }
             Command::Turbulence(sigma_mps) => {
                 self.surroundings.turbulence_mps = Surroundings::checked_turbulence(*sigma_mps)?;
@@ -205,9 +210,16 @@ impl Scene {
         let mut body = self.ecs.get::<&mut Body>(entity).map_err(|_| missing())?;
         let model = &self.catalogue.models[body.model as usize].thing;
         change(&mut body, model)?;
+        // It may have another fastest mode now.
+        body.look_anew();
         self.views.bodies.take();
         Ok(())
     }
+}
+
+/// A refusal as an event keeps it: a list of names would make it longer than a save takes.
+fn shown(why: &Refused) -> String {
+    why.to_string().chars().take(300).collect()
 }
 
 /// Refuses a command with a number that is not finite or a text that is too long: what a save would not read back.

@@ -11,7 +11,6 @@
 use super::body::Body;
 use super::catalogue::fingerprint;
 use super::codec::{Coded, FNV_BASIS, Reader, fnv};
-use super::event::MOST_KEPT;
 use super::shell::Shell;
 use super::target::TargetState;
 use super::{
@@ -29,7 +28,7 @@ const VERSION: u32 = 1;
 /// Most ids, rounds and events: no run of a scene counts so far, and a sum of two still fits.
 const MOST_COUNTED: u64 = 1 << 60;
 /// Fastest projectile that is taken back, m/s: above twice what a muzzle and its owner may give.
-const FASTEST_MPS: f64 = 100_000.0;
+const FASTEST_MPS: f64 = 1e7;
 
 super::codec::coded_choice!(Mode { Pilot, Track, Slew });
 
@@ -188,11 +187,6 @@ impl Scene {
         self.log = from.take()?;
         if self.fired.values().any(|rounds| *rounds > MOST_COUNTED) || self.log.counted > MOST_COUNTED {
             return Err(from.refuse(format_args!("expected at most {MOST_COUNTED} rounds and events")));
-        }
-        if self.log.recent.len() > MOST_KEPT {
-            return Err(
-                from.refuse(format_args!("expected at most {MOST_KEPT} events, found {}", self.log.recent.len()))
-            );
         }
         self.pending = from.take::<Vec<Stamped>>()?.into();
         let rises = self.pending.iter().zip(self.pending.iter().skip(1)).all(|(a, b)| a.step <= b.step);

@@ -32,6 +32,7 @@ impl Scene {
         }
         if self.freeze == Freeze::Total {
             self.clock.set_date(date);
+            self.bursts.iter_mut().for_each(|burst| burst.wait(dt_s));
             self.look_down(ground);
             return;
         }

@@ -132,6 +132,10 @@ impl TargetState {
     /// What a restored one must be, so that stepping it cannot fail.
     pub fn check(&self) -> Result<(), Refused> {
         place("target.position_m", self.position_m)?;
+        let (Height::OverGround(height_m) | Height::Msl(height_m)) = self.height;
+        if height_m.is_nan() || height_m.abs() > 1e6 {
+            return Err(Refused::new(format_args!("target.height: expected metres within 1e6, found {height_m}")));
+        }
         self.route.as_ref().map_or(Ok(()), Route::check)
     }
 

@@ -69,6 +69,7 @@ fn sphere() -> Result<Projectile, Failure> {
     let curve = DragCurve::new(&[[0.0, CD], [20.0, CD]], sim::table::Interpolation::Linear)
         .map_err(|why| Failure::while_doing("making a sphere", why))?;
     Ok(Projectile {
+        drag_file: None,
         file: PathBuf::from("sphere"),
         mass_kg: MASS_KG,
         diameter_m: None,
