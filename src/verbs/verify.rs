@@ -348,8 +348,8 @@ mod tests {
     #[test]
     fn a_proof_that_looked_at_nothing_is_none() {
         let seen = report::Gpu { vertices_checked: 1, pixels_checked: 10, ..report::Gpu::default() };
-        let pop = report::Pop { grey_switches: Some(1), ..report::Pop::default() };
-        let whole = report::Verify { gpu: Some(seen), pop, ..report::Verify::default() };
+        let mut whole = report::Verify { gpu: Some(seen), ..report::Verify::default() };
+        whole.pop.grey_switches = Some(1);
         let due = Due { pixels: 10, switch: true };
         assert_eq!(broken(&whole, due), [""; 0]);
         let blind = report::Verify { gpu: Some(report::Gpu::default()), ..report::Verify::default() };
