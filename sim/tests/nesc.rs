@@ -7,7 +7,8 @@
 mod flown;
 
 use flown::{Columns, FT_M, KT_MPS, apart, asset, case, fly, model, shared, table};
-use sim::rigid::Model;
+use sim::rigid::column::COLUMNS;
+use sim::rigid::{Inputs, Model, Simulation};
 use std::path::Path;
 
 const CASES: &str = "nesc/NESC_data/Atmospheric_checkcases";
@@ -143,8 +144,8 @@ fn the_f16_trims_and_stays_trimmed_for_three_minutes() {
 fn the_f16_follows_its_autopilot() {
     let (Some(folder), Some(_)) = (shared(CASES), f16()) else { return };
     let text = asset("cases/f16_manoeuvre.toml");
-    // Tool 05 acts on its command 4 ms before 5 s (see below), which is 0.11 ft of a climb of 20 ft/s: at exactly 5 s
-    // the converged solution cannot be within 0.1 ft of it, at any step and with any of our integrators.
+    // Asked for is 0.1 ft; the converged solution of 13p1 is 0.110 ft from tool 05, at any step and with any of our
+    // integrators, as that tool's own step errs by this much over the jump: the test below shows it.
     for (name, inputs, seconds, step_s, limits) in [
         ("13p1", "inputs/f16_climb.csv", 20.0, 5.0, [0.12, f64::INFINITY, 0.1]),
         ("13p2", "inputs/f16_slow_down.csv", 20.0, 5.0, [0.1, f64::INFINITY, 0.1]),
@@ -157,12 +158,37 @@ fn the_f16_follows_its_autopilot() {
         println!("NESC {name} against 05: ft, ft, kt, deg {gaps:?}");
         assert!(gaps.iter().zip(&limits).all(|(gap, limit)| gap < limit), "case {name}: {gaps:?}");
     }
-    let early = asset("inputs/f16_climb.csv").replace("\n5,", "\n4.996,");
-    let ours = fly(f16().unwrap(), &case(&text.replace("seconds = 60.0", "seconds = 20.0")), &early);
-    let at_step = |t: f64| (4.99..=5.2).contains(&t);
-    let [height_ft, ..] = flight_apart(&ours, &published(&folder, "13p1", "05"), 190, &at_step);
-    println!("NESC 13p1 against 05, commanded at 4.996 s: {height_ft} ft");
-    assert!(height_ft < 0.01, "{height_ft} ft");
+}
+
+/// Tool 05 integrates by the second order of Adams and Bashforth, 100 steps a second, and keeps the rate of the step
+/// before the jump of the command, which our own `ab2` forgets. Flown so, no row needs leaving out, the one at 5 s (where
+/// it has not answered yet) and those of the jump included.
+#[test]
+fn tool_05_is_met_at_the_jump_itself_by_its_own_integrator() {
+    let (Some(folder), Some(model)) = (shared(CASES), f16()) else { return };
+    let text = asset("cases/f16_manoeuvre.toml").replace("dt_s = 0.01\n", "dt_s = 0.01\nintegrator = 'ab2'\n");
+    let inputs = asset("inputs/f16_climb.csv").replace("5,,,10113\n", "");
+    let inputs = Inputs::from_text(Path::new("inputs.csv"), &inputs, &model.controls).unwrap();
+    assert_eq!(inputs.edges().len(), 1, "only what is on from the start");
+    let mut flight = Simulation::new(model, &case(&text), inputs, None).unwrap();
+    let command = flight.motion.model.control("altitudeMslCommand_ft").unwrap();
+    let mut ours: Columns = COLUMNS.iter().map(|name| ((*name).to_owned(), Vec::new())).collect();
+    for step in 0..=2_000 {
+        if step == 500 {
+            // Past the inputs, which would make `ab2` begin anew.
+            flight.motion.controls[command] = 10_113.0;
+        }
+        if step % 10 == 0 {
+            for (name, value) in COLUMNS.iter().zip(flight.row()) {
+                ours.get_mut(*name).unwrap().push(value);
+            }
+        }
+        flight.step();
+    }
+    let gaps = flight_apart(&ours, &published(&folder, "13p1", "05"), 190, &nothing);
+    println!("NESC 13p1 against 05, by ab2 over the jump, no row left out: ft, ft, kt, deg {gaps:?}");
+    // The figures of case 11, where nothing jumps.
+    assert!(gaps[0] < 0.05 && gaps[2] < 0.005, "{gaps:?}");
 }
 
 #[test]
