@@ -269,8 +269,8 @@ fn a_line_of_sight_uphill_is_met() {
         })
         .collect();
     let table = path_and_speed(&table);
-    // Farther out its air thins faster with height than the standard's (1.4 % in 119 m would be air of one temperature,
-    // the standard's is 1.1 %), which it does not tell: 0.16 % of speed at 750 yards. To 300 yards that is no digit.
+    // Farther out the figure is missed: 0.16 % of speed at 750 yards, 0.42 % of the path at 1,000. Why is not known; air
+    // that thins faster with height than the standard's (1.4 % in 119 m, air of one temperature, for 1.1 %) would do it.
     // Its -0.6 in at 50 yards asks for a zero on the slope, its -14.8 at 300 for one on the level: a whole digit is allowed.
     let near = table.iter().position(|row| row[0] > 300.0).unwrap();
     compared("g1_nowind_up.txt, all of it", &found, &table, 3e-4, [0.05, 0.05]);
@@ -285,16 +285,24 @@ fn wind_from_behind_and_the_left_carries_as_in_the_table() {
     let mph = 0.447_04;
     let wind = format!("{HUMID}[[wind]]\nnorth_mps = {}\neast_mps = {}\n", 20.0 * mph * cos, 20.0 * mph * sin);
     let ours = G1.to_1000_yards(&wind);
-    // Printed digits are rounded, so here half of one is added to the share instead of being an alternative to it:
-    // 0.348 ft/s of 1153.3 at 800 yards are 0.0302 %.
-    let worst = compared("g1_wind.txt", &yards_inches_feet(&ours), &path_and_speed(&table), 3.5e-4, [0.05, 0.15]);
+    // Three cells are outside 0.03 % or half a digit: 0.069 and 0.064 in at 600 and 650 yards, 0.35 ft/s (0.0302 %) at 800.
+    // A share and the rounding of what is printed may both be used up, so here they are added.
+    let mut worst = Worst::default();
+    for (ours, table) in yards_inches_feet(&ours).iter().zip(path_and_speed(&table)) {
+        for (found, expected) in ours.iter().zip(table).skip(1) {
+            let share = (found - expected).abs() / (3e-4 * expected.abs() + 0.05);
+            worst.see(share, || format!("{} yd: {found:.3} for {expected}", table[0]));
+        }
+    }
+    compared("g1_wind.txt", &yards_inches_feet(&ours), &path_and_speed(&table), 3e-4, [0.05, 0.05]);
+    println!("g1_wind.txt: {:.2} of 0.03 % and half a digit at {}", worst.value, worst.at);
     let mut aside = Worst::default();
     for (row, expected) in ours.rows.iter().zip(&table) {
         let inches = row.get(Column::Z).unwrap() / INCH_M;
         aside.see(of_allowed(inches, expected[3], 1e-3, 0.05), || format!("{} yd: {inches:.3} in", expected[0]));
     }
     println!("g1_wind.txt: aside {:.2} of 0.1 % or half a digit at {}", aside.value, aside.at);
-    assert!(worst.iter().all(|worst| *worst <= 1.0) && aside.value <= 1.0, "{worst:?} {}", aside.at);
+    assert!(worst.value <= 1.0 && aside.value <= 1.0, "{} {}", worst.at, aside.at);
 }
 
 #[test]
