@@ -10,6 +10,7 @@
 //!include "shared/sky.wgsl"
 //!include "shared/display.wgsl"
 //!include "shared/posts.wgsl"
+//!include "shared/light.wgsl"
 
 // Texels along a block's ground map.
 const MAP_SIDE: f32 = 64.0;
@@ -19,10 +20,8 @@ override DETAIL: u32 = 2u;
 // 1: tint by level.
 override OVERLAY: u32 = 0u;
 
-@group(1) @binding(3) var light_maps: texture_2d_array<f32>;
 @group(1) @binding(4) var ground_maps: texture_2d<f32>;
 @group(1) @binding(5) var detail_texture: texture_2d<f32>;
-@group(1) @binding(6) var map_sampler: sampler;
 @group(1) @binding(7) var detail_sampler: sampler;
 
 struct Surface {
@@ -71,16 +70,6 @@ fn water_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) slot
     return surface;
 }
 
-fn haze(relative_m: vec3<f32>) -> vec4<f32> {
-    let through = haze_from_eye(relative_m);
-    return vec4<f32>(sky_radiance(normalize(relative_m)) * (1.0 - through), through);
-}
-
-fn light_at(local: vec2<f32>, slot: vec2<f32>) -> vec4<f32> {
-    let texel = slot * f32(TILE) + local + 0.5;
-    return textureSampleLevel(light_maps, map_sampler, texel * window.light_texel, window.light_layer, 0.0);
-}
-
 fn map_at(local: vec3<f32>, slot: vec2<f32>) -> vec4<f32> {
     let texel = slot * MAP_SIDE + local.xy * ((MAP_SIDE - 1.0) / f32(TILE - 2u)) + 0.5;
     return textureSampleLevel(ground_maps, map_sampler, texel * window.map_texel, local.z);
@@ -90,18 +79,6 @@ fn map_at(local: vec3<f32>, slot: vec2<f32>) -> vec4<f32> {
 fn map_level(relative_m: vec3<f32>) -> f32 {
     let texel_px = window.step_m * (f32(TILE - 2u) / (MAP_SIDE - 1.0)) * frame.focal_px / length(relative_m);
     return clamp(2.8 - texel_px, 0.0, 1.0);
-}
-
-// Radiance of ground of an albedo under sun and sky; `light` is a texel of the light map, `tilt` bends its normal.
-fn lit(albedo: vec3<f32>, light: vec4<f32>, tilt: vec2<f32>) -> vec3<f32> {
-    let plan = light.rg * 2.0 - 1.0;
-    let up = sqrt(max(1.0 - dot(plan, plan), 0.01));
-    // The tilt is small: the bent normal is not made unit length again.
-    let sun = max(dot(vec3<f32>(plan + tilt, up).xzy, frame.sun_direction), 0.0) * light.b;
-    let sky = light.a * (0.5 + 0.5 * up);
-    // What the sky does not reach is lit by other ground a little.
-    let bounced = 0.12 * (1.0 - sky) * max(frame.sun_direction.y, 0.0);
-    return albedo * (1.0 / 3.14159265) * (frame.sun_irradiance * (sun + bounced) + frame.sky_irradiance * sky);
 }
 
 @fragment
@@ -175,8 +152,4 @@ fn overlaid(colour: vec3<f32>, level: f32) -> vec3<f32> {
         tint = vec3<f32>(0.1, 0.25, 0.9);
     }
     return mix(colour, tint * (0.15 + dot(colour, vec3<f32>(0.3, 0.6, 0.1))), 0.6);
-}
-
-fn shown(colour: vec3<f32>, haze: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
-    return vec4<f32>(dither(display(colour * haze.a + haze.rgb), pixel), 1.0);
 }

@@ -3,7 +3,7 @@
 //! How a value is read and what it may be stands in [`crate::values`]. A flag that is not given is `None` where the
 //! quality preset or the world decides. Misuse is told by clap and ends with exit status 2.
 
-use crate::values::{self, Extent, Look, MapPoint, Overlay, Place, Priced, Quality, Size, Subject};
+use crate::values::{self, Extent, Look, MapPoint, Overlay, Place, Priced, Quality, Size, Subject, Without};
 use clap::{Args, Parser, Subcommand};
 use sim::UtcTime;
 use std::path::PathBuf;
@@ -83,6 +83,12 @@ pub struct ViewArgs {
     /// Show how the ground is made.
     #[arg(long, value_name = "O")]
     pub overlay: Option<Overlay>,
+    /// Leave out what stands on the ground: overlays, objects, plants, lights.
+    #[arg(long, value_name = "KIND", value_delimiter = ',', num_args = 1..)]
+    pub without: Vec<Without>,
+    /// Share of the plants that are drawn, 0 to 1 [default: the preset's].
+    #[arg(long, value_name = "SHARE", value_parser = values::share, allow_hyphen_values = true)]
+    pub plants: Option<f64>,
 }
 
 /// `poligon fly`

@@ -52,6 +52,8 @@ pub fn landscape(world: &World, rings: &Rings) -> Arc<Landscape> {
     Arc::new(Landscape {
         ground: Ground::new(world.field.clone()),
         lakes: Arc::new(world.lakes.clone()),
+        features: world.features.clone(),
+        cover: world.cover.clone(),
         climate: Climate::new(world.projection.centre().lat_rad, world.info.statistics.mean_m),
         masks,
     })

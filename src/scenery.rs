@@ -7,7 +7,7 @@ use crate::args::ViewArgs;
 use crate::failure::Failure;
 use crate::open_world;
 use crate::output;
-use crate::values::{Overlay, Quality};
+use crate::values::{Overlay, Quality, Without};
 use glam::{DQuat, DVec2, DVec3};
 use sim::UtcTime;
 use std::sync::{Arc, Once};
@@ -19,7 +19,25 @@ use visual::camera::View;
 use visual::gpu::AdapterKind;
 use visual::passes::lines::Stroke;
 use visual::passes::terrain::{Terrain, TerrainLook};
-use visual::{Frame, Gpu, Renderer, Scene};
+use visual::{Frame, Gpu, Layer, Renderer, Scene};
+
+/// What of a world is drawn beside its ground. What a world does not have costs nothing whatever stands here.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Content {
+    /// Roads, running water, runways: what is draped on the ground.
+    pub overlays: bool,
+    /// Buildings and placed things.
+    pub objects: bool,
+    /// Share of the plants that are drawn, 0 to 1.
+    pub plants: f32,
+    /// Light points and lit windows.
+    pub lights: bool,
+}
+
+impl Content {
+    /// All of it.
+    pub const ALL: Self = Self { overlays: true, objects: true, plants: 1.0, lights: true };
+}
 
 /// Everything that decides a picture but the eye and the time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,6 +62,8 @@ pub struct Look {
     pub render_scale: f32,
     /// How the ground is drawn.
     pub ground: TerrainLook,
+    /// What else is drawn.
+    pub content: Content,
     /// Wait for every block and every sky table.
     pub wait: bool,
     /// Keep depth for reading back.
@@ -66,6 +86,16 @@ impl Look {
             msaa: args.msaa.unwrap_or(preset.msaa),
             render_scale: args.render_scale.map_or(preset.render_scale, |scale| scale as f32),
             ground: TerrainLook { overlay: args.overlay == Some(Overlay::Blocks), ..preset.ground },
+            content: Content {
+                overlays: preset.content.overlays && !args.without.contains(&Without::Overlays),
+                objects: preset.content.objects && !args.without.contains(&Without::Objects),
+                lights: preset.content.lights && !args.without.contains(&Without::Lights),
+                plants: match args.plants {
+                    _ if args.without.contains(&Without::Plants) => 0.0,
+                    Some(share) => share as f32,
+                    None => preset.content.plants,
+                },
+            },
             wait,
             ..preset
         }
@@ -73,10 +103,10 @@ impl Look {
 
     /// A preset alone: 1280 x 720 pixels, 60 degrees, waiting for every block.
     pub fn preset(quality: Quality) -> Self {
-        let (window, msaa, render_scale, detail) = match quality {
-            Quality::Fine => (24, 4, 1.0, 2),
-            Quality::Standard => (24, 1, 1.0, 1),
-            Quality::Software => (12, 1, 0.67, 0),
+        let (window, msaa, render_scale, detail, plants) = match quality {
+            Quality::Fine => (24, 4, 1.0, 2, 1.0),
+            Quality::Standard => (24, 1, 1.0, 1, 1.0),
+            Quality::Software => (12, 1, 0.67, 0, 0.4),
         };
         Self {
             size_px: [1280, 720],
@@ -89,6 +119,7 @@ impl Look {
             msaa,
             render_scale,
             ground: TerrainLook { detail, overlay: false, wireframe: false },
+            content: Content { plants, ..Content::ALL },
             wait: true,
             keep_depth: false,
         }
@@ -210,7 +241,11 @@ impl Scenery {
         };
         let frame = Frame { scene, views: vec![*view], hud };
         let terrain = &self.terrain;
-        self.renderer.render(&self.gpu, &frame, &[target], |about, pass| terrain.draw(about.index, pass))
+        self.renderer.render(&self.gpu, &frame, &[target], |about, layer, pass| {
+            if layer == Layer::Solid {
+                terrain.draw(about.index, pass);
+            }
+        })
     }
 }
 

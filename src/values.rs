@@ -92,6 +92,19 @@ pub enum Overlay {
     Blocks,
 }
 
+/// What may be left out of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Without {
+    /// Roads, running water, runways.
+    Overlays,
+    /// Buildings and placed things.
+    Objects,
+    /// Trees and bushes.
+    Plants,
+    /// Light points and lit windows.
+    Lights,
+}
+
 /// What `bench` measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Subject {
@@ -290,6 +303,14 @@ pub fn visibility_m(text: &str) -> Result<f64, Refused> {
 /// [`Refused`] if it is not within 0.25..=1.
 pub fn render_scale(text: &str) -> Result<f64, Refused> {
     number(text, "a scale", 0.25..=1.0)
+}
+
+/// A share of something.
+///
+/// # Errors
+/// [`Refused`] if it is not within 0..=1.
+pub fn share(text: &str) -> Result<f64, Refused> {
+    number(text, "a share", 0.0..=1.0)
 }
 
 /// Frames a second to hold.

@@ -11,20 +11,13 @@ use std::sync::Arc;
 use terrain::block::mask::{Mask, SUBS};
 use terrain::block::payload::tile_heights_m;
 use terrain::block::{Landscape, Rings, ground_map::Climate, mesh, template};
-use terrain::features::lakes::Lakes;
 use terrain::verify::cracks::{self, Cracks, Sheet, Side};
 use terrain::verify::flight::Piece;
-use terrain::{BlockIndex, Field, Grid, Ground, RingMasks, synthetic};
+use terrain::{BlockIndex, Field, Grid, synthetic};
 use visual::passes::terrain::eye_uniforms;
 
 fn landscape(field: Field, rings: &Rings) -> Landscape {
-    let field = Arc::new(field);
-    Landscape {
-        masks: RingMasks::new(&field, rings.limits_m),
-        ground: Ground::new(field),
-        lakes: Arc::new(Lakes::default()),
-        climate: Climate::new(0.7, 1_000.0),
-    }
+    Landscape::bare(Arc::new(field), rings.limits_m, Climate::new(0.7, 1_000.0))
 }
 
 #[test]

@@ -10,7 +10,6 @@ use rand::{RngExt, SeedableRng};
 use std::sync::Arc;
 use terrain::block::window::Level;
 use terrain::block::{Landscape, Rings, ground_map::Climate};
-use terrain::features::lakes::Lakes;
 use terrain::verify::flight::Flight;
 use terrain::verify::near::Near;
 use terrain::verify::{far, pop};
@@ -20,12 +19,7 @@ use visual::proof::{Stage, depth, grey, heights};
 use visual::{Gpu, Scene};
 
 fn landscape(field: Arc<Field>, rings: &Rings) -> Arc<Landscape> {
-    Arc::new(Landscape {
-        masks: RingMasks::new(&field, rings.limits_m),
-        ground: Ground::new(field),
-        lakes: Arc::new(Lakes::default()),
-        climate: Climate::new(0.7, 1_000.0),
-    })
+    Arc::new(Landscape::bare(field, rings.limits_m, Climate::new(0.7, 1_000.0)))
 }
 
 /// A world with mountains, holes and a cliff, and rings near enough for all of them to be in a window of 12.

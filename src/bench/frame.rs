@@ -116,7 +116,7 @@ impl Bare {
         let view = visual::camera::View::fov_y(camera.eye_m, camera.attitude, 60f64.to_radians(), self.target.size_px);
         let scene = Scene { sun_direction: to_sun, ..Scene::default() };
         let frame = Frame { scene, views: vec![view], hud: Vec::new() };
-        self.renderer.render(&self.gpu, &frame, &[&self.target.view], |_, _| ())?;
+        self.renderer.render(&self.gpu, &frame, &[&self.target.view], |_, _, _| ())?;
         self.gpu.wait()?;
         Ok(start.elapsed().as_secs_f64() * 1e3)
     }

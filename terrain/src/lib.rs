@@ -15,6 +15,7 @@ mod field;
 pub mod frame;
 mod grid;
 mod ground;
+pub mod near;
 mod projection;
 mod pyramid;
 pub mod store;

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use terrain::features::cover::Cover;
 use terrain::features::lakes::Lakes;
 use terrain::store::{Extent, FORMAT_VERSION, Statistics, Voids, World, WorldInfo};
 use terrain::{Geodetic, Grid, Projection, synthetic};
@@ -19,6 +20,8 @@ pub fn write(test: &str) -> PathBuf {
         mean_m: sound().sum::<f64>() / grid.posts() as f64,
     };
     let mut world = World {
+        features: Default::default(),
+        cover: Arc::new(Cover::unknown(&grid)),
         name: "Ridges".into(),
         projection: Projection::new(Geodetic::from_degrees(lat_deg, lon_deg)).expect("a projection"),
         info: WorldInfo {

@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, sun_deg, visibility_m, altitude_m) in cases {
         let frame = frame(name, sun_deg, visibility_m, altitude_m);
         let start = Instant::now();
-        renderer.render(&gpu, &frame, &[&target.view], |_, _| ())?;
+        renderer.render(&gpu, &frame, &[&target.view], |_, _, _| ())?;
         gpu.wait()?;
         let first_ms = start.elapsed().as_secs_f64() * 1e3;
         let picture = target.read(&gpu)?;
@@ -70,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let mut times_ms = Vec::new();
             for _ in 0..40 {
                 let start = Instant::now();
-                renderer.render(&gpu, &frame, &[&target.view], |_, _| ())?;
+                renderer.render(&gpu, &frame, &[&target.view], |_, _, _| ())?;
                 gpu.wait()?;
                 times_ms.push(start.elapsed().as_secs_f64() * 1e3);
             }

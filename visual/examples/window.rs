@@ -46,7 +46,7 @@ fn main() -> Result<(), window::WindowError> {
                     hud,
                 };
                 if let Some(renderer) = &mut renderer {
-                    renderer.render(gpu, &frame, &[target], |_, _| ())?;
+                    renderer.render(gpu, &frame, &[target], |_, _, _| ())?;
                 }
             }
         }

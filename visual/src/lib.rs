@@ -23,7 +23,7 @@ pub mod window;
 
 pub use frame::{Frame, Scene};
 pub use gpu::{Gpu, GpuError};
-pub use renderer::{Renderer, SceneView, Settings};
+pub use renderer::{Layer, Renderer, SceneView, Settings};
 
 // Named in signatures; whoever draws needs no wgpu of its own.
 pub use wgpu::{Texture, TextureFormat, TextureView};

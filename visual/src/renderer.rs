@@ -4,8 +4,9 @@
 //! where MSAA is on). Below 1 the scene is drawn small, then stretched over the final target, and strokes are drawn at
 //! full resolution in that second pass. Shaders write display colour themselves; there is no HDR target between.
 //!
-//! What is solid is drawn by the caller's closure, inside the scene's pass and before the sky, with group 0 bound. Its
-//! pipelines are made for [`Renderer::scene_format`] and [`Renderer::frame_layout`].
+//! What a scene holds is drawn by the caller's closure, inside the scene's pass and with group 0 bound: once for
+//! [`Layer::Solid`] before the sky, once for [`Layer::Blended`] after it. Its pipelines are made for
+//! [`Renderer::scene_format`] and [`Renderer::frame_layout`].
 
 use crate::camera::{DEPTH_CLEAR, DEPTH_FORMAT, View};
 use crate::frame::{Frame, Scene};
@@ -68,7 +69,16 @@ struct Targets {
     small: Option<(wgpu::TextureView, wgpu::BindGroup)>,
 }
 
-/// What a solid pass may need to know of the view it draws, beside group 0.
+/// When in a view's pass something is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// Before the sky, with depth written.
+    Solid,
+    /// After the sky, blended over what is there, depth tested and not written: lights, particles.
+    Blended,
+}
+
+/// What a pass of the scene may need to know of the view it draws, beside group 0.
 pub struct SceneView<'a> {
     /// Which of the frame's views.
     pub index: usize,
@@ -129,7 +139,7 @@ impl Renderer {
 
     /// Draws each view into its target and submits. Views without a target, and targets without a view, are left.
     ///
-    /// `solid` draws inside the scene's pass, before the sky, with group 0 bound; it may draw nothing.
+    /// `draw` draws inside the scene's pass, a layer at a time, with group 0 bound; it may draw nothing.
     ///
     /// # Errors
     /// [`GpuError::Size`] for a view that is empty or too large, and what the device reports ([`Gpu::check`]).
@@ -138,7 +148,7 @@ impl Renderer {
         gpu: &Gpu,
         frame: &Frame,
         targets: &[&wgpu::TextureView],
-        mut solid: impl FnMut(&SceneView<'_>, &mut wgpu::RenderPass<'_>),
+        mut draw: impl FnMut(&SceneView<'_>, Layer, &mut wgpu::RenderPass<'_>),
     ) -> Result<(), GpuError> {
         let scene = frame.scene.sane();
         let altitude_m = frame.views.first().map_or(0.0, |view| view.eye_m.y);
@@ -154,7 +164,7 @@ impl Renderer {
         for (index, (view, target)) in frame.views.iter().zip(targets).enumerate() {
             gpu.check_size(view.size_px)?;
             self.fit(gpu, index, view.size_px);
-            self.draw_view(gpu, &mut encoder, &scene, index, view, target, &mut solid);
+            self.draw_view(gpu, &mut encoder, &scene, index, view, target, &mut draw);
         }
         gpu.queue.submit([encoder.finish()]);
         gpu.check()
@@ -168,7 +178,7 @@ impl Renderer {
         index: usize,
         view: &View,
         target: &wgpu::TextureView,
-        solid: &mut impl FnMut(&SceneView<'_>, &mut wgpu::RenderPass<'_>),
+        draw: &mut impl FnMut(&SceneView<'_>, Layer, &mut wgpu::RenderPass<'_>),
     ) {
         let Some(light) = self.feed.light() else { return };
         // An insane view would reach the shader as NaN; the sky straight ahead is a picture, garbage is not.
@@ -210,9 +220,11 @@ impl Renderer {
         });
         pass.set_bind_group(0, &frame_group, &[]);
         let about = SceneView { index, view: &safe, target_px: targets.scene_px, frame_group: &frame_group };
-        solid(&about, &mut pass);
+        draw(&about, Layer::Solid, &mut pass);
         pass.set_bind_group(0, &frame_group, &[]);
         self.sky.draw(&mut pass);
+        draw(&about, Layer::Blended, &mut pass);
+        pass.set_bind_group(0, &frame_group, &[]);
         if targets.small.is_none() && index == 0 {
             self.lines.draw(&mut pass);
         }

@@ -16,6 +16,7 @@ pub const SOURCES: &[(&str, &str)] = &[
 pub const SHARED: &[(&str, &str)] = &[
     ("shared/display.wgsl", include_str!("../../shaders/shared/display.wgsl")),
     ("shared/frame.wgsl", include_str!("../../shaders/shared/frame.wgsl")),
+    ("shared/light.wgsl", include_str!("../../shaders/shared/light.wgsl")),
     ("shared/posts.wgsl", include_str!("../../shaders/shared/posts.wgsl")),
     ("shared/sky.wgsl", include_str!("../../shaders/shared/sky.wgsl")),
 ];

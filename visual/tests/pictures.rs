@@ -5,7 +5,7 @@ use visual::camera::View;
 use visual::capture::{self, Offscreen, Picture};
 use visual::passes::lines::Stroke;
 use visual::uniforms::FrameUniforms;
-use visual::{Frame, Gpu, GpuError, Renderer, Scene, Settings, shaders};
+use visual::{Frame, Gpu, GpuError, Layer, Renderer, Scene, Settings, shaders};
 
 fn gpu() -> Option<Gpu> {
     match Gpu::headless() {
@@ -25,7 +25,7 @@ fn frame(scene: Scene, heading_rad: f64, size_px: [u32; 2]) -> Frame {
 fn drawn(gpu: &Gpu, frame: &Frame, settings: Settings) -> Picture {
     let target = Offscreen::new(gpu, frame.views[0].size_px).expect("target");
     let mut renderer = Renderer::new(gpu, capture::FORMAT, settings);
-    renderer.render(gpu, frame, &[&target.view], |_, _| ()).expect("rendered");
+    renderer.render(gpu, frame, &[&target.view], |_, _, _| ()).expect("rendered");
     target.read(gpu).expect("read")
 }
 
@@ -128,10 +128,10 @@ fn nonsense_is_refused_or_drawn_but_never_fatal() {
     let target = Offscreen::new(&gpu, [16, 16]).expect("target");
     let mut renderer = Renderer::new(&gpu, capture::FORMAT, Settings::default());
     let empty = Frame { scene: Scene::default(), views: Vec::new(), hud: Vec::new() };
-    renderer.render(&gpu, &empty, &[&target.view], |_, _| ()).expect("no views, no work");
+    renderer.render(&gpu, &empty, &[&target.view], |_, _, _| ()).expect("no views, no work");
     let mut zero = frame(Scene::default(), 0.0, [16, 16]);
     zero.views[0].size_px = [0, 16];
-    assert!(matches!(renderer.render(&gpu, &zero, &[&target.view], |_, _| ()), Err(GpuError::Size { .. })));
+    assert!(matches!(renderer.render(&gpu, &zero, &[&target.view], |_, _, _| ()), Err(GpuError::Size { .. })));
 }
 
 #[test]
@@ -206,7 +206,10 @@ fn the_shaders_haze_is_its_twins_and_solid_things_hide_the_sky() {
         cache: None,
     });
     renderer
-        .render(&gpu, &frame, &[&target.view], |_, pass| {
+        .render(&gpu, &frame, &[&target.view], |_, layer, pass| {
+            if layer != Layer::Solid {
+                return;
+            }
             pass.set_pipeline(&pipeline);
             pass.draw(0..3, 0..1);
         })

@@ -6,8 +6,10 @@ use super::mosaic::{mosaic, pixel_m};
 use super::open;
 use super::raster::{Raster, Unreadable};
 use super::void_fill;
+use crate::features::cover::Cover;
 use crate::features::lake_bake::{self, LakesError, TAPER_POSTS};
 use crate::features::lakes::Lakes;
+use crate::features::model::Features;
 use crate::field::Field;
 use crate::grid::Grid;
 use crate::projection::{Geodetic, Projection};
@@ -170,7 +172,8 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
     // Samples are within the field's bounds and means do not leave them; a lake's level was checked when read.
     let field = Field::new(grid, sampled.heights_m).map_err(|_| BakeError::AllVoid)?;
     let name = request.name.clone();
-    let mut world = World { name, projection, field: Arc::new(field), lakes, masks: Vec::new(), info };
+    let (features, cover) = (Arc::new(Features::default()), Arc::new(Cover::unknown(&grid)));
+    let mut world = World { name, projection, field: Arc::new(field), lakes, features, cover, masks: Vec::new(), info };
     progress("masks", 0.0);
     world.make_ring_masks();
     Ok(world)

@@ -7,8 +7,10 @@ use super::ground_map::{self, Climate};
 use super::light;
 use super::mask::{BlockPosts, Mask, block_posts};
 use super::mesh::{self, Indices, TILE};
-use super::rings::RingMasks;
+use super::rings::{FAR_RINGS, RingMasks};
+use crate::features::cover::Cover;
 use crate::features::lakes::Lakes;
+use crate::features::model::Features;
 use crate::field::Field;
 use crate::grid::{BlockIndex, PostRect};
 use crate::ground::Ground;
@@ -26,6 +28,10 @@ pub struct Landscape {
     pub ground: Ground,
     /// Standing water.
     pub lakes: Arc<Lakes>,
+    /// What else lies on the ground.
+    pub features: Arc<Features>,
+    /// What covers it.
+    pub cover: Arc<Cover>,
     /// What the ground map's belts depend on.
     pub climate: Climate,
     /// Masks of every block and far ring.
@@ -114,6 +120,18 @@ pub fn tile_heights_m(field: &Field, block: BlockIndex) -> Box<[f32]> {
 }
 
 impl Landscape {
+    /// Ground with nothing on it.
+    pub fn bare(field: Arc<Field>, limits_m: [f64; FAR_RINGS], climate: Climate) -> Self {
+        Self {
+            masks: RingMasks::new(&field, limits_m),
+            lakes: Arc::default(),
+            features: Arc::default(),
+            cover: Arc::new(Cover::unknown(field.grid())),
+            climate,
+            ground: Ground::new(field),
+        }
+    }
+
     /// The mesh of a block for a ring.
     pub fn mesh(&self, block: BlockIndex, ring: usize) -> Mesh {
         let field = self.ground.field();

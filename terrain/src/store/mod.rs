@@ -3,11 +3,16 @@
 //! - `world.toml`: what the world is ([`WorldInfo`]), with the length and CRC-32 of every other file
 //! - `heights.bin`: posts row by row, north first, each row from the west; f32 little-endian metres, NaN void
 //! - `lakes.json`: outlines in world metres and levels
+//! - `features.bin`: what lies on the ground but lakes ([`Features`]), postcard; absent if there is nothing
+//! - `cover.bin`: what covers it ([`Cover`]): cells along a post step as u32 little-endian, then the cells, deflated; absent
+//!   if nothing is known
 //! - `masks.bin`: the block masks of the rings, as [`crate::block`] packs them; absent if none were made
 //!
 //! A world is written to a folder beside its place and renamed into it, so a place holds a whole world or what it held
 //! before. Reading checks version, sizes and sums, so a world that reads is the one that was written.
 
+mod cover;
+mod features;
 mod folder;
 mod info;
 mod masks;
@@ -16,7 +21,9 @@ pub use folder::StoreError;
 pub use info::{Extent, FORMAT_VERSION, FeatureCount, FileInfo, LakeInfo, Source, Statistics, Voids, WorldInfo};
 
 use crate::block::rings::{RingMasks, Rings};
+use crate::features::cover::Cover;
 use crate::features::lakes::{Lake, Lakes};
+use crate::features::model::Features;
 use crate::field::Field;
 use crate::grid::Grid;
 use crate::projection::{Geodetic, Projection};
@@ -29,9 +36,11 @@ use std::sync::Arc;
 const HEIGHTS: &str = "heights.bin";
 const LAKES: &str = "lakes.json";
 const MASKS: &str = "masks.bin";
+const FEATURES: &str = "features.bin";
+const COVER: &str = "cover.bin";
 
 /// All that a world's folder may hold.
-const FILES: [&str; 4] = [folder::INFO, HEIGHTS, LAKES, MASKS];
+const FILES: [&str; 6] = [folder::INFO, HEIGHTS, LAKES, MASKS, FEATURES, COVER];
 
 /// A world in memory.
 #[derive(Debug, Clone)]
@@ -44,6 +53,10 @@ pub struct World {
     pub field: Arc<Field>,
     /// Its lakes.
     pub lakes: Lakes,
+    /// What else lies on its ground.
+    pub features: Arc<Features>,
+    /// What covers its ground.
+    pub cover: Arc<Cover>,
     /// The masks of its blocks, packed by [`crate::block`]; empty if none were made.
     pub masks: Vec<u8>,
     /// What `world.toml` says of it.
@@ -100,8 +113,20 @@ impl World {
             Some(_) => read_checked(path, &info, MASKS, None)?,
             None => Vec::new(),
         };
+        let features = match info.file(FEATURES) {
+            Some(_) => features::from_bytes(&read_checked(path, &info, FEATURES, None)?)
+                .map_err(|found| StoreError::damaged(&path.join(FEATURES), "features", found))?,
+            None => Features::default(),
+        };
+        let cover = match info.file(COVER) {
+            Some(_) => cover::from_bytes(&read_checked(path, &info, COVER, None)?, &grid)
+                .map_err(|found| StoreError::damaged(&path.join(COVER), "a cover of the world's size", found))?,
+            None => Cover::unknown(&grid),
+        };
         Ok(Self {
             name: info.name.clone(),
+            features: Arc::new(features),
+            cover: Arc::new(cover),
             projection,
             field: Arc::new(field),
             lakes: Lakes::new(lakes.into_iter().map(Lake::from).collect()),
@@ -138,7 +163,15 @@ impl World {
         let heights: Vec<u8> = self.field.heights_m().iter().flat_map(|h| h.to_le_bytes()).collect();
         let lakes: Vec<StoredLake> = self.lakes.lakes().iter().map(StoredLake::from).collect();
         let lakes = serde_json::to_vec(&lakes).map_err(|e| StoreError::io(path, e.into()))?;
+        let features = features::to_bytes(&self.features).map_err(|e| StoreError::io(path, e))?;
+        let cover = cover::to_bytes(&self.cover, self.field.grid()).map_err(|e| StoreError::io(path, e))?;
         let mut files = vec![(HEIGHTS, heights.as_slice()), (LAKES, lakes.as_slice())];
+        if *self.features != Features::default() {
+            files.push((FEATURES, &features));
+        }
+        if !self.cover.cells().is_empty() {
+            files.push((COVER, &cover));
+        }
         if !self.masks.is_empty() {
             files.push((MASKS, &self.masks));
         }

@@ -332,10 +332,10 @@ fn layout_entries() -> [wgpu::BindGroupLayoutEntry; 8] {
         entry(0, seen, buffer),
         entry(1, vertex | wgpu::ShaderStages::COMPUTE, buffer),
         entry(2, vertex | wgpu::ShaderStages::COMPUTE, texture(false, flat)),
-        entry(3, fragment, texture(true, wgpu::TextureViewDimension::D2Array)),
+        entry(3, vertex | fragment, texture(true, wgpu::TextureViewDimension::D2Array)),
         entry(4, fragment, texture(true, flat)),
         entry(5, fragment, texture(true, flat)),
-        entry(6, fragment, sampler),
+        entry(6, vertex | fragment, sampler),
         entry(7, fragment, sampler),
     ]
 }

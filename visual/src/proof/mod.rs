@@ -83,7 +83,11 @@ impl Stage {
     pub fn draw(&mut self, view: &View) -> Result<(), GpuError> {
         let frame = Frame { scene: self.scene, views: vec![*view], hud: Vec::new() };
         let terrain = &self.terrain;
-        self.renderer.render(&self.gpu, &frame, &[&self.target.view], |about, pass| terrain.draw(about.index, pass))
+        self.renderer.render(&self.gpu, &frame, &[&self.target.view], |about, layer, pass| {
+            if layer == crate::Layer::Solid {
+                terrain.draw(about.index, pass);
+            }
+        })
     }
 
     /// The picture drawn.

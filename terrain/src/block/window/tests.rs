@@ -3,9 +3,7 @@
 use super::*;
 use crate::block::ground_map::Climate;
 use crate::block::light;
-use crate::block::rings::RingMasks;
-use crate::features::lakes::Lakes;
-use crate::{Grid, Ground, synthetic};
+use crate::{Grid, synthetic};
 
 const BLOCKS: u32 = 12;
 
@@ -14,12 +12,7 @@ fn window(wait: bool) -> Window {
     let field = Arc::new(synthetic::ridges(grid, 5));
     // Near rings, so that all kinds of mesh occur in a small window.
     let rings = Rings::with_near_radius(6_000.0, 1.0);
-    let landscape = Landscape {
-        masks: RingMasks::new(&field, rings.limits_m),
-        ground: Ground::new(field),
-        lakes: Arc::new(Lakes::default()),
-        climate: Climate::new(0.7, 1_000.0),
-    };
+    let landscape = Landscape::bare(field, rings.limits_m, Climate::new(0.7, 1_000.0));
     let settings = Settings { blocks: BLOCKS, rings, budget_bytes: BUDGET_BYTES, wait, threads: 2 };
     Window::new(Arc::new(landscape), settings, DVec3::new(0.3, 0.8, 0.2).normalize())
 }
