@@ -6,6 +6,7 @@
 
 mod bench;
 mod fly;
+mod gallery;
 mod height;
 mod shot;
 mod sight;
@@ -19,6 +20,7 @@ pub use bench::{Bench, BenchResult, Skipped, Yardstick};
 pub use fly::{
     Adapter, BuildCpuMs, Fly, FrameMs, MemoryBytes, Sim, Terrain, Track, UpdateCpuMs, UploadBytes, World, quantile,
 };
+pub use gallery::Gallery;
 pub use height::{HeightPoint, Heights};
 pub use shot::Shot;
 pub use sight::{Hit, Sight};
@@ -127,6 +129,12 @@ mod tests {
         assert_eq!(
             names(&Shot::default()),
             "out size image_hash visibility_m triangles_drawn triangles_all_level0 late_blocks"
+        );
+        let gallery = Gallery { pictures: vec![Shot::default()], ..Gallery::default() };
+        assert_eq!(
+            names(&gallery),
+            "pictures[].out pictures[].size pictures[].image_hash pictures[].visibility_m pictures[].triangles_drawn \
+             pictures[].triangles_all_level0 pictures[].late_blocks contact_sheet"
         );
         assert_eq!(names(&Sight::default()), "visible hit clearance_min_m clearance_min_at_m distance_m ground_share");
         let result = BenchResult { yardstick: Some(Yardstick::default()), ..BenchResult::default() };
