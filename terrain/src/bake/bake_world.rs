@@ -2,14 +2,17 @@
 
 use super::error::BakeError;
 use super::extent::{extent, middle, written_deg};
-use super::features::{self, RawFeature};
+use super::features::{self, AirfieldRow, Content, Placed, Site};
 use super::mosaic::{mosaic, pixel_m};
 use super::open;
 use super::raster::{Raster, Unreadable};
 use super::void_fill;
 use crate::features::cover_bake::{self, bake_cover};
 use crate::features::cover_rules::Climate;
+use crate::features::lakes::Lakes;
+use crate::features::model::Airfield;
 use crate::field::Field;
+use crate::grid::Grid;
 use crate::ground::Ground;
 use crate::projection::{Geodetic, Projection};
 use crate::store::{Extent, FORMAT_VERSION, Source, Statistics, Voids, World, WorldInfo};
@@ -44,7 +47,7 @@ pub struct BakeRequest {
     pub name: String,
     /// Files of heights, each with the factor that turns its numbers into metres (1 for metres).
     pub sources: Vec<(Input, f64)>,
-    /// Files of features: OSM PBF and XML, GeoJSON, shapefiles.
+    /// Files of features: OSM PBF and XML, GeoJSON, shapefiles, tables of airfields.
     pub features: Vec<Input>,
     /// Distance between posts, metres, 25..=400.
     pub step_m: f64,
@@ -123,12 +126,15 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
     };
     progress("filling voids", 1.0);
     progress("features", 0.0);
-    let mut placed = features::place(&read_features(request)?, &projection, &grid);
+    let read = read_features(request)?;
+    let mut placed = features::place(&read.features, &projection, &grid);
     progress("lakes", 0.0);
     let (lakes, lake_infos, mut ponds) =
-        features::set_lakes(placed.waters, &grid, &mut sampled.heights_m, &mut placed.counts);
+        features::set_lakes(std::mem::take(&mut placed.waters), &grid, &mut sampled.heights_m, &mut placed.counts);
     placed.features.areas.append(&mut ponds);
     progress("lakes", 1.0);
+    placed.features.airfields =
+        set_airfields(&read.airfields, &mut placed, &projection, &lakes, &grid, &mut sampled.heights_m)?;
     let statistics = statistics(&sampled.heights_m);
     // Samples are within the field's bounds and means do not leave them; a lake's level was checked when read.
     let field = Arc::new(Field::new(grid, sampled.heights_m).map_err(|_| BakeError::AllVoid)?);
@@ -184,13 +190,34 @@ fn scaled(input: &Input, height_scale: f64) -> Result<Raster, BakeError> {
 }
 
 /// All features of all files.
-fn read_features(request: &BakeRequest) -> Result<Vec<RawFeature>, BakeError> {
-    let mut all = Vec::new();
+fn read_features(request: &BakeRequest) -> Result<Content, BakeError> {
+    let mut all = Content::default();
     for input in &request.features {
         let read = features::open(input);
-        all.append(&mut read.map_err(|problem| BakeError::Features { file: input.shown(), problem })?);
+        let mut read = read.map_err(|problem| BakeError::Features { file: input.shown(), problem })?;
+        all.features.append(&mut read.features);
+        all.airfields.append(&mut read.airfields);
     }
     Ok(all)
+}
+
+/// Airfields in the ground, if any file has some.
+fn set_airfields(
+    rows: &[AirfieldRow],
+    placed: &mut Placed,
+    projection: &Projection,
+    lakes: &Lakes,
+    grid: &Grid,
+    heights_m: &mut [f32],
+) -> Result<Vec<Airfield>, BakeError> {
+    let drawn = std::mem::take(&mut placed.aeroways);
+    if rows.is_empty() && drawn.is_empty() {
+        return Ok(Vec::new());
+    }
+    let before = Field::new(*grid, heights_m.to_vec()).map_err(|_| BakeError::AllVoid)?;
+    let ground = Ground::new(Arc::new(before)).whole();
+    let site = Site { projection, ground: &ground, lakes };
+    Ok(features::set_airfields(rows, drawn, &site, heights_m, &mut placed.counts))
 }
 
 fn statistics(heights_m: &[f32]) -> Statistics {

@@ -3,7 +3,9 @@
 //! What lies outside the world's rectangle is left out; what crosses its edge is kept whole. Points that repeat the one
 //! before are dropped first.
 
+use super::aeroways::{Aerodrome, Aeroways, DrawnRunway, ends_of_ring};
 use super::kind::{Counts, Kind};
+use super::measure::metres;
 use super::raw::{AreaOf, Element, Polygon, RawFeature, Shape, Tags, ring_of};
 use super::tags::{Meaning, is_paved, meanings};
 use super::waters::OpenWater;
@@ -29,8 +31,16 @@ pub struct Placed {
     pub features: Features,
     /// Lakes, ponds, river areas.
     pub waters: Vec<OpenWater>,
+    /// What is drawn of airfields; not in the books yet.
+    pub aeroways: Aeroways,
     /// The books.
     pub counts: Counts,
+}
+
+/// When a feature is counted.
+enum Book {
+    Keep,
+    Later,
 }
 
 struct Placer<'a> {
@@ -62,20 +72,21 @@ impl Placer<'_> {
         }
         for (kind, meaning) in all {
             match meaning.and_then(|meaning| self.make(feature, kind, &meaning)) {
-                Ok(()) => self.placed.counts.keep(kind),
+                Ok(Book::Keep) => self.placed.counts.keep(kind),
+                Ok(Book::Later) => {}
                 Err(reason) => self.placed.counts.skip(kind, reason),
             }
         }
     }
 
-    fn make(&mut self, feature: &RawFeature, kind: Kind, meaning: &Meaning) -> Result<(), String> {
+    fn make(&mut self, feature: &RawFeature, kind: Kind, meaning: &Meaning) -> Result<Book, String> {
         let tags = &feature.tags;
         match *meaning {
             Meaning::Road(class, width_m, from) => {
                 if tags.is("area", "yes") || matches!(feature.shape, Shape::Polygon(_)) {
                     self.area(feature, kind, CoverClass::Paved)?;
                     self.placed.counts.note(kind, "kept as a paved area");
-                    return Ok(());
+                    return Ok(Book::Keep);
                 }
                 let (tunnel, bridge) = (under(tags), tags.says("bridge"));
                 let paved = is_paved(tags, class);
@@ -92,7 +103,8 @@ impl Placer<'_> {
             }
             Meaning::Waterway(class, width_m, from) => {
                 if matches!(feature.shape, Shape::Polygon(_)) {
-                    return self.water(feature, kind, false);
+                    self.water(feature, kind, false)?;
+                    return Ok(Book::Keep);
                 }
                 let tunnel = under(tags);
                 let lines = self.lines(feature)?.into_iter();
@@ -126,14 +138,15 @@ impl Placer<'_> {
             Meaning::PowerTower(height_m) => {
                 // Judged when all lines are known.
                 self.towers.push((self.middle_degrees(feature)?, height_m));
-                return Ok(());
+                return Ok(Book::Later);
             }
             Meaning::Mast(class, height_m) => {
                 let at = self.point(feature)?;
                 self.placed.features.masts.push(Mast { class, at, height_m });
             }
             Meaning::Runway(_) | Meaning::Taxiway(_) | Meaning::Apron | Meaning::Aerodrome => {
-                return Err("no airfield within 3 km".into());
+                self.aeroway(feature, kind, meaning)?;
+                return Ok(Book::Later);
             }
             Meaning::Helipad => match feature.shape {
                 Shape::Point(_) => {
@@ -147,18 +160,72 @@ impl Placer<'_> {
                 _ => self.area(feature, kind, CoverClass::Paved)?,
             },
         }
+        Ok(Book::Keep)
+    }
+
+    /// What belongs to an airfield: it is known later to which.
+    fn aeroway(&mut self, feature: &RawFeature, kind: Kind, meaning: &Meaning) -> Result<(), String> {
+        let tags = &feature.tags;
+        match *meaning {
+            Meaning::Runway(surface) => {
+                let designators = tags.get("ref").and_then(|text| {
+                    let (low, high) = text.split_once('/')?;
+                    Some([low, high].map(|one| one.trim().chars().take(3).collect::<String>()))
+                });
+                let drawn = self.lines(feature).ok().and_then(|lines| lines.into_iter().next());
+                let outline = match &drawn {
+                    Some(line) if line.first() != line.last() => None,
+                    _ => Some(self.polygon(feature, kind, 0.0)?.outers.remove(0)),
+                };
+                let (ends, drawn_m) = match (outline, drawn) {
+                    (Some(outline), _) => ends_of_ring(&outline).map(|(ends, width_m)| (ends, Some(width_m as f32))),
+                    (None, Some(line)) => line.first().zip(line.last()).map(|(a, b)| ([*a, *b], None)),
+                    (None, None) => None,
+                }
+                .ok_or("an outline without a length")?;
+                let stated = tags.get("width").and_then(metres).map(|width_m| width_m as f32);
+                let sane = |width_m: &f32| (5.0..=200.0).contains(width_m);
+                let width_m = stated.filter(sane).or(drawn_m.filter(sane));
+                let lit = tags.says("lit");
+                let runway = DrawnRunway { ends, width_m, designators, surface, lit, features: 1 };
+                if !(50.0..=8_000.0).contains(&runway.length_m()) {
+                    return Err("not 50 to 8,000 m long".into());
+                }
+                self.placed.aeroways.runways.push(runway);
+            }
+            Meaning::Taxiway(width_m) => {
+                let lines = self.lines(feature)?;
+                self.placed.aeroways.taxiways.push((lines, width_m));
+            }
+            Meaning::Apron => {
+                let polygon = self.polygon(feature, kind, 0.0)?;
+                self.placed.aeroways.aprons.push(polygon.outers);
+            }
+            _ => {
+                let at = self.point(feature)?;
+                let text = |key| tags.get(key).unwrap_or_default().to_owned();
+                let (code, name) = (text("icao"), text("name"));
+                let elevation_m = tags.get("ele").and_then(metres);
+                self.placed.aeroways.aerodromes.push(Aerodrome { code, name, at, elevation_m });
+            }
+        }
         Ok(())
     }
 
     /// A tower that stands where a line has a point is drawn with the line; others stand alone.
     fn finish_towers(&mut self) {
         for (at, height_m) in std::mem::take(&mut self.towers) {
-            if self.power_points.contains(&units(at)) {
-                self.placed.counts.note(Kind::PowerTowers, "drawn with its line");
-                continue;
-            }
-            if let Some(at) = self.to_world(at).filter(|at| self.near(*at, *at, 0.0)) {
-                self.placed.features.masts.push(Mast { class: MastClass::Tower, at, height_m });
+            let place = self.to_world(at).filter(|at| self.near(*at, *at, 0.0));
+            match place {
+                None => self.placed.counts.skip(Kind::PowerTowers, OUTSIDE),
+                Some(_) if self.power_points.contains(&units(at)) => {
+                    self.placed.counts.keep(Kind::PowerTowers);
+                    self.placed.counts.note(Kind::PowerTowers, "drawn with its line");
+                }
+                Some(at) => {
+                    self.placed.counts.keep(Kind::PowerTowers);
+                    self.placed.features.masts.push(Mast { class: MastClass::Tower, at, height_m });
+                }
             }
         }
     }
@@ -283,12 +350,17 @@ impl Placer<'_> {
     }
 
     fn to_world(&self, lon_lat: DVec2) -> Option<DVec2> {
-        let place = Geodetic::from_degrees(lon_lat.y, lon_lat.x);
-        if angle_rad(place, self.projection.centre()) >= FAR_RAD {
-            return None;
-        }
-        Some(self.projection.to_world(place)).filter(|at| at.is_finite())
+        to_world(self.projection, lon_lat)
     }
+}
+
+/// A place on the plane; `None` if it is too far away for that.
+pub fn to_world(projection: &Projection, lon_lat: DVec2) -> Option<DVec2> {
+    let place = Geodetic::from_degrees(lon_lat.y, lon_lat.x);
+    if angle_rad(place, projection.centre()) >= FAR_RAD {
+        return None;
+    }
+    Some(projection.to_world(place)).filter(|at| at.is_finite())
 }
 
 /// What a feature is whose tags say nothing known.
