@@ -26,7 +26,7 @@ pub use simulate::{Simulated, Stiffness, TrimFound};
 pub use trade::{Knob, KnobPoint, Trade};
 pub use trajectory::TrajectoryReport;
 pub use verify::{EdgesChecked, Far, Gpu, Near, Verify};
-pub use world::{Extent, FeatureCount, Lake, Source, Voids, WorldReport};
+pub use world::{Cover, Extent, FeatureCount, Lake, Source, Voids, WorldReport};
 
 /// A 64-bit hash as it is reported.
 pub fn hash(value: u64) -> String {
@@ -98,7 +98,8 @@ mod tests {
         );
         let features = BTreeMap::from([("highways".to_owned(), FeatureCount::default())]);
         let (sources, lakes) = (vec![Source::default()], vec![Lake::default()]);
-        let world = WorldReport { sources, features, lakes, ..WorldReport::default() };
+        let cover = Some(Cover { shares: one("Grass"), ..Cover::default() });
+        let world = WorldReport { sources, features, lakes, cover, ..WorldReport::default() };
         assert_eq!(
             names(&world),
             "name blocks posts step_m extent.centre_lat_deg extent.centre_lon_deg extent.west_m extent.east_m \
@@ -106,7 +107,7 @@ mod tests {
              voids.beyond_posts sources[].name sources[].format sources[].credit sources[].step_m sources[].system \
              sources[].height_scale sources[].void_samples sources[].note wall_s peak_rss_mib \
              features.highways.read features.highways.kept features.highways.skipped lakes[].name lakes[].level_m \
-             lakes[].level_from lakes[].posts"
+             lakes[].level_from lakes[].posts cover.cell_m cover.shares.Grass cover.from_features"
         );
         let heights = Heights { points: vec![HeightPoint::default()] };
         assert_eq!(
