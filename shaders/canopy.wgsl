@@ -73,9 +73,9 @@ fn canopy_fragment(surface: Surface) -> @location(0) vec4<f32> {
     if surface.looks.x + 0.5 * (crown.a - 0.5) < 0.5 || surface.looks.w < 0.02 {
         discard;
     }
-    let conifer = vec3<f32>(0.022, 0.041, 0.023);
-    let broadleaf = vec3<f32>(0.050, 0.092, 0.028);
-    let albedo = mix(broadleaf, conifer, surface.looks.y) * (0.86 + 0.28 * surface.looks.z) * (2.6 * crown.r);
+    let conifer = vec3<f32>(0.033, 0.051, 0.023);
+    let broadleaf = vec3<f32>(0.050, 0.078, 0.026);
+    let albedo = mix(broadleaf, conifer, surface.looks.y) * (0.62 + 0.76 * surface.looks.z) * (2.9 * crown.r);
     let slope = (crown.gb * 2.0 - 1.0) * 0.9;
     return shown(lit(albedo, surface.light, slope), surface.haze, surface.clip.xy);
 }

@@ -251,7 +251,7 @@ fn leaf_vertex(
     let flat = normal_open.xyz;
     let normal = vec3<f32>(turn.x * flat.x - turn.y * flat.z, flat.y, turn.y * flat.x + turn.x * flat.z);
     let light = light_under(foot_m.xz);
-    let bark = vec3<f32>(0.085, 0.066, 0.050) * (0.8 + 0.4 * parts.w);
+    let bark = vec3<f32>(0.080, 0.068, 0.056) * (0.8 + 0.4 * parts.w);
     let albedo = select(crown_colour(species, parts.w, parts.z), bark, leaf.layer == 2u);
     // A leaf picture's mean shade is near 0.38.
     leaf.light = albedo * crown_light(dot(normal, frame.sun_direction), light.b, light.a, normal.y) * (normal_open.w * 2.9);

@@ -6,7 +6,7 @@
 //!
 //! Invariant: a tile is a function of the world and the tile alone; neighbours agree on their border.
 
-use crate::place::{Nursery, corner_m};
+use crate::place::{Nursery, corner_m, lattice};
 use crate::species::Site;
 use glam::DVec2;
 use terrain::Grid;
@@ -32,7 +32,7 @@ pub struct Corner {
     pub ground_m: f32,
     /// Of the canopy above the ground, metres.
     pub high_m: f32,
-    /// Share of forest around, share of conifers in it, a shade, and its turn towards a glade: 0..=255.
+    /// Share of forest around, share of conifers in it, a shade: 0..=255.
     pub looks: [u8; 4],
 }
 
@@ -91,12 +91,9 @@ pub fn canopy(nursery: &Nursery, tile: TileIndex) -> Canopy {
             let share = [0.0, 0.12, 0.35, 0.65, 1.0][forest];
             let low = ((ground_m / tree_line_m - 0.8) / 0.3).clamp(0.0, 1.0);
             let tall = HIGH_M[if conifers > 170 { Site::Conifer } else { Site::Broadleaf } as usize] * (1.0 - 0.6 * low);
-            let [shade, _, _] = crate::scatter::hash(
-                (tile.x.wrapping_mul(CELLS as i32)).wrapping_add(column as i32),
-                (tile.z.wrapping_mul(CELLS as i32)).wrapping_add(row as i32),
-                60,
-            );
-            let looks = [(forest * 255 / 4) as u8, conifers.min(255) as u8, (shade >> 24) as u8, 0];
+            // Stands differ over some 600 and 200 m.
+            let shade = 0.55 * lattice(at / 610.0, 61) + 0.45 * lattice(at / 190.0, 62);
+            let looks = [(forest * 255 / 4) as u8, conifers.min(255) as u8, (shade * 255.0) as u8, 0];
             corners.push(Corner { at: [column as u16, row as u16], ground_m, high_m: share * tall, looks });
         }
     }

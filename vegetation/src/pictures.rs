@@ -238,7 +238,7 @@ pub fn crowns() -> Picture {
             let (x, z) = (x as f32, z as f32);
             let slope = |dx: f32, dz: f32| 1.9 * (height(x - dx, z - dz) - height(x + dx, z + dz));
             let tall = height(x, z);
-            texels.push([0.12 + 0.5 * tall, slope(0.5, 0.0), slope(0.0, 0.5), tall]);
+            texels.push([0.06 + 0.62 * tall * tall, slope(0.5, 0.0), slope(0.0, 0.5), tall]);
         }
     }
     let mut mips = vec![Canvas { size: [CROWNS, CROWNS], texels }];

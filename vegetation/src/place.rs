@@ -43,8 +43,8 @@ pub struct Tier {
 pub const TIERS: [Tier; 3] = [
     // Cells of 67.4 m: 7,921 plants at most in a tile.
     Tier { number: 0, side_m: 6_000.0, cells: 89, reach_m: 10_000.0, full: 0.6 },
-    // 20 m.
-    Tier { number: 1, side_m: 1_500.0, cells: 75, reach_m: 3_800.0, full: 0.4 },
+    // 15 m.
+    Tier { number: 1, side_m: 1_500.0, cells: 100, reach_m: 5_000.0, full: 0.3 },
     // 10 m.
     Tier { number: 2, side_m: 500.0, cells: 50, reach_m: 800.0, full: 0.5 },
 ];
@@ -252,7 +252,7 @@ fn thicket(cover: CoverClass, at: DVec2) -> f32 {
 }
 
 /// Value noise, 0..1: products and sums only.
-fn lattice(at: DVec2, salt: u32) -> f32 {
+pub(crate) fn lattice(at: DVec2, salt: u32) -> f32 {
     let (x, z) = (at.x.floor(), at.y.floor());
     let ease = |t: f32| t * t * (3.0 - 2.0 * t);
     let (u, v) = (ease((at.x - x) as f32), ease((at.y - z) as f32));

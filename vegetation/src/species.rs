@@ -87,7 +87,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: DRY,
         steepest: 0.75,
         weights: [1.0, 0.0, 0.6, 0.0, 0.5, 0.05],
-        colour: [0.024, 0.045, 0.026],
+        colour: [0.034, 0.053, 0.024],
     },
     // To 50 m, commonly 25-40 m; in the Alps to the tree line: Farjon, A Handbook of the World's Conifers, 2010.
     Species {
@@ -100,7 +100,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: MOIST,
         steepest: 0.75,
         weights: [1.0, 0.0, 0.5, 0.0, 0.2, 0.15],
-        colour: [0.026, 0.050, 0.024],
+        colour: [0.036, 0.057, 0.023],
     },
     // To 55 m, commonly 25-40 m; montane, below the spruce: Farjon 2010.
     Species {
@@ -113,7 +113,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: MOIST,
         steepest: 0.7,
         weights: [0.35, 0.0, 0.3, 0.0, 0.05, 0.05],
-        colour: [0.022, 0.042, 0.026],
+        colour: [0.031, 0.048, 0.023],
     },
     // To 35 m, 5-25 m in the mountains: Farjon 2010.
     Species {
@@ -126,7 +126,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: MOIST,
         steepest: 0.8,
         weights: [0.45, 0.0, 0.35, 0.0, 0.25, 0.15],
-        colour: [0.040, 0.062, 0.030],
+        colour: [0.046, 0.064, 0.028],
     },
     // Uncinata in the Pyrenees: to 20 m, 1,400-2,700 m: Farjon 2010.
     Species {
@@ -139,7 +139,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: MOIST,
         steepest: 0.85,
         weights: [0.6, 0.0, 0.2, 0.0, 0.4, 0.0],
-        colour: [0.036, 0.056, 0.030],
+        colour: [0.042, 0.060, 0.028],
     },
     // Prostrate to 3-5 m about the tree line: Farjon 2010 (subsp. mugo).
     Species {
@@ -152,7 +152,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: MOIST,
         steepest: 0.9,
         weights: [0.0, 0.0, 0.0, 1.0, 0.3, 0.0],
-        colour: [0.036, 0.060, 0.028],
+        colour: [0.038, 0.054, 0.022],
     },
     // 25-35 (-50) m; to 1,000 m in the Carpathians, 1,700 m in the Pyrenees: European Atlas of Forest Tree Species, 2016.
     Species {
@@ -165,7 +165,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: MOIST,
         steepest: 0.75,
         weights: [0.0, 1.0, 0.6, 0.0, 0.2, 0.3],
-        colour: [0.055, 0.105, 0.030],
+        colour: [0.050, 0.080, 0.025],
     },
     // 20-40 m, low ground: European Atlas of Forest Tree Species, 2016 (Q. robur, Q. petraea).
     Species {
@@ -178,7 +178,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: MOIST,
         steepest: 0.6,
         weights: [0.0, 0.8, 0.4, 0.0, 0.6, 0.6],
-        colour: [0.060, 0.098, 0.032],
+        colour: [0.052, 0.072, 0.024],
     },
     // 15-25 m, first on open ground, near to the tree line: European Atlas of Forest Tree Species, 2016 (B. pendula).
     Species {
@@ -190,8 +190,8 @@ pub const SPECIES: [Species; 14] = [
         latitudes_deg: [38.0, 70.0],
         dryness: ALL_DRYNESS,
         steepest: 0.75,
-        weights: [0.03, 0.35, 0.3, 0.05, 0.3, 0.3],
-        colour: [0.085, 0.130, 0.045],
+        weights: [0.012, 0.35, 0.3, 0.05, 0.3, 0.3],
+        colour: [0.066, 0.084, 0.028],
     },
     // 20-30 m columns along ditches and streets of Central Asia and Europe: Flora of China vol. 4 (P. nigra var. italica to
     // 30 m; P. laurifolia and P. talassica in the valleys of the Tian Shan).
@@ -205,7 +205,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: ALL_DRYNESS,
         steepest: 0.25,
         weights: [0.0, 0.1, 0.0, 0.0, 0.3, 0.8],
-        colour: [0.062, 0.100, 0.036],
+        colour: [0.056, 0.076, 0.027],
     },
     // Elms, apples and willows of Central Asian towns and valley floors: 8-20 m (Flora of China vols 4, 5, 9).
     Species {
@@ -218,7 +218,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: DRY,
         steepest: 0.5,
         weights: [0.0, 0.9, 0.4, 0.0, 0.4, 0.9],
-        colour: [0.070, 0.105, 0.042],
+        colour: [0.062, 0.080, 0.032],
     },
     // Prostrate, 1-2 m tall and several wide, 1,600-3,900 m about the tree line of the Tian Shan: Farjon 2010 (J. pseudosabina).
     Species {
@@ -231,7 +231,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: DRY,
         steepest: 0.9,
         weights: [0.0, 0.0, 0.0, 1.0, 1.0, 0.0],
-        colour: [0.040, 0.062, 0.036],
+        colour: [0.052, 0.068, 0.034],
     },
     // Caragana, Rosa, Berberis and the like, hazel and thorn in Europe: 1-4 m.
     Species {
@@ -244,7 +244,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: ALL_DRYNESS,
         steepest: 0.8,
         weights: [0.05, 0.10, 0.08, 1.0, 0.8, 0.5],
-        colour: [0.070, 0.092, 0.040],
+        colour: [0.066, 0.076, 0.032],
     },
     // Pinus halepensis 10-20 m and Quercus ilex 8-20 m, to about 1,000 m: European Atlas of Forest Tree Species, 2016.
     Species {

@@ -270,7 +270,7 @@ fn crowns(gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
         address_mode_v: wgpu::AddressMode::Repeat,
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Nearest,
         ..wgpu::SamplerDescriptor::default()
     });
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());

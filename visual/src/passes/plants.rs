@@ -24,9 +24,9 @@ use vegetation::place::{Nursery, PARTS, Planted, SQUARES, TIERS, Tier};
 use vegetation::species::{SHAPES, SPECIES};
 
 /// Up to where tall plants are meshes, metres; low ones change sooner.
-pub const MESH_M: f64 = 260.0;
+pub const MESH_M: f64 = 200.0;
 /// From where plants are single triangles, metres.
-pub const FAR_M: f64 = 2_300.0;
+pub const FAR_M: f64 = 1_900.0;
 /// A plant so tall is a mesh up to [`MESH_M`].
 const TALL_M: f32 = 20.0;
 /// Most that a plant may stand above its foot, metres.
@@ -79,6 +79,12 @@ pub struct TileEntry {
 struct Near {
     foot_m: [f32; 3],
     looks: u32,
+}
+
+impl Near {
+    fn distance_squared(&self) -> f32 {
+        Vec3::from_array(self.foot_m).length_squared()
+    }
 }
 
 /// A corner of a model.
@@ -356,8 +362,8 @@ impl Plants {
     }
 }
 
-/// Most plants of a tile: those of the far tier.
-const MOST_PLANTS: usize = 8_000;
+/// Most plants of a tile: those of the middle tier.
+const MOST_PLANTS: usize = 10_000;
 
 fn grow(nursery: &Nursery, tier: &Tier, tile: TileIndex, share: f32) -> Grown {
     let planted = nursery.plants(tier, tile, share);
@@ -459,6 +465,9 @@ impl ViewDraws {
         self.counts = PlantCounts { draw_calls: self.draws.len(), ..PlantCounts::default() };
         for ((meshes, near), (indices, _)) in self.meshes.iter_mut().zip(near).zip(models) {
             let first = all.len() as u32;
+            // Nearest first: what is behind is not shaded.
+            let mut near = near.clone();
+            near.sort_by(|a, b| a.distance_squared().total_cmp(&b.distance_squared()));
             all.extend(near.iter().take(MOST_MESHES - all.len()));
             *meshes = first..all.len() as u32;
             self.counts.draw_calls += usize::from(meshes.start < meshes.end);
@@ -687,7 +696,10 @@ fn pipelines(device: &wgpu::Device, groups: &[&wgpu::BindGroupLayout; 4], format
                 compilation_options: options.clone(),
                 buffers,
             },
-            primitive: wgpu::PrimitiveState::default(),
+            primitive: wgpu::PrimitiveState {
+                cull_mode: if buffers.is_empty() { None } else { Some(wgpu::Face::Back) },
+                ..wgpu::PrimitiveState::default()
+            },
             depth_stencil: format.depth_state(wgpu::CompareFunction::Greater, true),
             multisample: format.multisample(),
             fragment: Some(wgpu::FragmentState {
