@@ -70,7 +70,7 @@ fn canopy_vertex(
 fn canopy_fragment(surface: Surface) -> @location(0) vec4<f32> {
     let crown = textureSample(crowns, crown_sampler, surface.uv);
     // The edge runs between crowns: the tall ones stand farthest out.
-    if surface.looks.x + 0.5 * (crown.a - 0.5) < 0.5 || surface.looks.w < 0.02 {
+    if surface.looks.x + 0.3 * (crown.a - 0.5) < 0.62 || surface.looks.w < 0.02 {
         discard;
     }
     let conifer = vec3<f32>(0.033, 0.051, 0.023);

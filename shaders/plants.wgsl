@@ -67,7 +67,7 @@ struct Card {
 
 struct Plain {
     @builtin(position) clip: vec4<f32>,
-    @location(0) @interpolate(flat) colour: vec3<f32>,
+    @location(0) colour: vec3<f32>,
 }
 
 struct Leaf {
@@ -117,6 +117,11 @@ fn crown_colour(species: u32, tint: f32, turn: f32) -> vec3<f32> {
     return kinds[species].colour.rgb * (0.72 + 0.56 * tint) * vec3<f32>(1.0 + warm, 1.0, 1.0 - warm);
 }
 
+// From where a plant is a triangle: a conifer looks like one early; each changes at a distance of its own.
+fn card_reach(stand: Stand) -> f32 {
+    return tile.far_m * select(1.0, 0.5, kinds[stand.species].shape < 1.5) * (0.8 + 0.2 * stand.turn);
+}
+
 // How far a plant has changed from a mesh to a card; the host's `mesh_reach_m` is where this is 1.
 fn meshless(distance_m: f32, tall_m: f32) -> f32 {
     let reach_m = tile.mesh_m * clamp(tall_m / 20.0, 0.2, 1.0);
@@ -132,7 +137,7 @@ fn card_vertex(@builtin(vertex_index) index: u32) -> Card {
     let stand = stand_of(index / 4u);
     var card: Card;
     let gone = 1.0 - meshless(stand.distance_m, stand.tall_m);
-    if gone >= 1.0 || stand.distance_m >= tile.far_m || stand.tall_m <= 0.0 {
+    if gone >= 1.0 || stand.distance_m >= card_reach(stand) || stand.tall_m <= 0.0 {
         card.clip = hidden();
         return card;
     }
@@ -151,12 +156,14 @@ fn card_vertex(@builtin(vertex_index) index: u32) -> Card {
     let half_wide = 0.5 * stand.wide_m;
     let half_high = 0.5 * (stand.tall_m * cos_view + stand.wide_m * sin_view);
     let corner = vec2<f32>(f32(index & 1u), f32((index >> 1u) & 1u));
-    let offset = (corner * 2.0 - 1.0) * vec2<f32>(half_wide, half_high);
+    // Seen from the side a conifer leaves the upper corners of its frame empty.
+    let narrow = select(1.0, 0.3, kind.shape < 1.5 && view == 0u && corner.y > 0.5);
+    let across = (corner.x * 2.0 - 1.0) * narrow;
+    let offset = vec2<f32>(across * half_wide, (corner.y * 2.0 - 1.0) * half_high);
     let at_m = middle_m + right * offset.x + up * offset.y;
     card.clip = frame.clip_from_relative * vec4<f32>(at_m, 1.0);
-    let mirrored = select(corner.x, 1.0 - corner.x, fract(stand.turn * 64.0) < 0.5);
     let hand = select(1.0, -1.0, fract(stand.turn * 64.0) < 0.5);
-    card.uv = vec3<f32>(mirrored, 1.0 - corner.y, gone);
+    card.uv = vec3<f32>(0.5 + 0.5 * across * hand, 1.0 - corner.y, gone);
     card.haze = haze(middle_m);
     let light = light_under(stand.foot_m.xz);
     let sun = frame.sun_direction;
@@ -195,7 +202,7 @@ fn card_fragment(card: Card) -> @location(0) vec4<f32> {
 fn far_vertex(@builtin(vertex_index) index: u32) -> Plain {
     let stand = stand_of(index / 3u);
     var plain: Plain;
-    if stand.distance_m < tile.far_m || stand.tall_m <= 0.0 {
+    if stand.distance_m < card_reach(stand) || stand.tall_m <= 0.0 {
         plain.clip = hidden();
         return plain;
     }
@@ -211,9 +218,12 @@ fn far_vertex(@builtin(vertex_index) index: u32) -> Plain {
     let at_m = stand.foot_m + right * (side * stand.wide_m) + up * select(0.0, high_m, corner == 2u);
     plain.clip = frame.clip_from_relative * vec4<f32>(at_m, 1.0);
     let light = light_under(stand.foot_m.xz);
-    // The mean of a round crown as seen from here.
-    let across = dot(to_eye, frame.sun_direction);
-    let shaded = crown_colour(stand.species, stand.tint, stand.turn) * crown_light(0.30 + 0.40 * across, light.b, light.a, 0.35 + 0.5 * down);
+    // A round crown: its sides look aside, its top up; low down it is in its own shade.
+    let outward = right * (side * 1.1) + to_eye * 0.7;
+    let facing = dot(outward, frame.sun_direction) + select(0.0, 0.25, corner == 2u);
+    let open = select(0.62, 1.25, corner == 2u);
+    let shaded = crown_colour(stand.species, stand.tint, stand.turn)
+        * (open * crown_light(facing, light.b, light.a, 0.3 + 0.5 * down));
     let air = haze(stand.foot_m);
     plain.colour = display(shaded * air.a + air.rgb);
     return plain;

@@ -15,9 +15,9 @@ use terrain::block::Rings;
 use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
 use terrain::store::World;
 use terrain::{Area, Geodetic};
+use vegetation::place::Nursery;
 use visual::camera::View;
 use visual::gpu::AdapterKind;
-use vegetation::place::Nursery;
 use visual::passes::canopy::{CanopyCounts, CanopyPass};
 use visual::passes::lines::Stroke;
 use visual::passes::plants::{PlantCounts, Plants};
@@ -156,6 +156,8 @@ pub struct Scenery {
     pub plants: Option<Plants>,
     /// The closed forest far away, where there is any.
     pub canopy: Option<CanopyPass>,
+    /// The view last followed.
+    view: Option<View>,
     renderer: Renderer,
 }
 
@@ -192,9 +194,8 @@ impl Scenery {
         let share = look.content.plants.min(1.0);
         let plants =
             nursery.as_ref().and_then(|n| Plants::new(&gpu, frame, ground, format, n, share, near_m, look.wait));
-        let canopy =
-            nursery.as_ref().and_then(|n| CanopyPass::new(&gpu, frame, ground, format, n, near_m, look.wait));
-        Self { plants, canopy, gpu, world, area, look, terrain, renderer }
+        let canopy = nursery.as_ref().and_then(|n| CanopyPass::new(&gpu, frame, ground, format, n, near_m, look.wait));
+        Self { plants, canopy, gpu, world, area, look, terrain, view: None, renderer }
     }
 
     /// Visibility drawn: as asked, clamped to what the window guarantees, metres.
@@ -232,6 +233,7 @@ impl Scenery {
     pub fn follow(&mut self, view: &View, speed_mps: f64, to_sun: DVec3) {
         self.terrain.follow(&self.gpu, view.eye_m, speed_mps, to_sun);
         self.terrain.prepare(&self.gpu, 0, view);
+        self.view = Some(*view);
         if let Some(plants) = &mut self.plants {
             plants.follow(&self.gpu, view.eye_m, speed_mps);
             plants.prepare(&self.gpu, 0, view);
@@ -242,10 +244,10 @@ impl Scenery {
         }
     }
 
-    /// What stands in a view that was followed: single plants, and the closed forest. Looks at every plant.
-    pub fn plants_drawn(&self, view: &View) -> (PlantCounts, CanopyCounts) {
-        let plants = self.plants.as_ref().map_or_else(PlantCounts::default, |plants| plants.counts(view));
-        (plants, self.canopy.as_ref().map_or_else(CanopyCounts::default, CanopyPass::counts))
+    /// What stands in the view last followed: single plants, and the closed forest. Looks at every plant.
+    pub fn plants_drawn(&self) -> (PlantCounts, CanopyCounts) {
+        let counted = self.plants.as_ref().zip(self.view.as_ref()).map(|(plants, view)| plants.counts(view));
+        (counted.unwrap_or_default(), self.canopy.as_ref().map_or_else(CanopyCounts::default, CanopyPass::counts))
     }
 
     /// Draws what was last followed, with strokes over it.

@@ -88,9 +88,10 @@ pub fn canopy(nursery: &Nursery, tile: TileIndex) -> Canopy {
             let conifers: u32 = around.iter().flatten().map(|class| conifers(*class)).sum();
             let conifers = if forest == 0 { 0 } else { conifers / forest as u32 };
             // Only whole forest stands at its height: edges slope down within a cell.
-            let share = [0.0, 0.12, 0.35, 0.65, 1.0][forest];
+            let share = [0.0, 0.05, 0.2, 0.55, 1.0][forest];
             let low = ((ground_m / tree_line_m - 0.8) / 0.3).clamp(0.0, 1.0);
-            let tall = HIGH_M[if conifers > 170 { Site::Conifer } else { Site::Broadleaf } as usize] * (1.0 - 0.6 * low);
+            let tall =
+                HIGH_M[if conifers > 170 { Site::Conifer } else { Site::Broadleaf } as usize] * (1.0 - 0.6 * low);
             // Stands differ over some 600 and 200 m.
             let shade = 0.55 * lattice(at / 610.0, 61) + 0.45 * lattice(at / 190.0, 62);
             let looks = [(forest * 255 / 4) as u8, conifers.min(255) as u8, (shade * 255.0) as u8, 0];
@@ -109,7 +110,9 @@ pub fn canopy(nursery: &Nursery, tile: TileIndex) -> Canopy {
                 if !whole || triangle.iter().all(|i| corners[*i].looks[0] == 0) {
                     continue;
                 }
-                area_m2 += 0.5 * cell_m * cell_m * triangle.iter().map(|i| f64::from(corners[*i].looks[0])).sum::<f64>() / 765.0;
+                area_m2 +=
+                    0.5 * cell_m * cell_m * triangle.iter().map(|i| f64::from(corners[*i].looks[0])).sum::<f64>()
+                        / 765.0;
                 for index in triangle {
                     if numbers[index] == u16::MAX {
                         numbers[index] = made.corners.len() as u16;

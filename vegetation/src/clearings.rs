@@ -174,7 +174,8 @@ mod tests {
         for i in 0..20_000 {
             let [a, b, _] = crate::scatter::uniforms(i, 1, 5);
             let at = DVec2::new(f64::from(a), f64::from(b)) * 3_200.0 - 1_600.0;
-            let near = |line: &[DVec2], reach: f64| line.windows(2).any(|p| distance_squared(at, p[0], p[1]) < reach * reach);
+            let near =
+                |line: &[DVec2], reach: f64| line.windows(2).any(|p| distance_squared(at, p[0], p[1]) < reach * reach);
             let ring: Vec<DVec2> = outline.iter().chain(&outline[..1]).copied().collect();
             let slow = near(&line, 7.0) || near(&ring, 3.0) || inside(at, &outline);
             assert_eq!(clearings.holds(at), slow, "{at}");

@@ -203,7 +203,8 @@ fn finish(canvas: Canvas) -> Picture {
         .map(|mip| {
             let factor = factor(mip);
             let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
-            let texel = |t: &[f32; 4]| [byte(t[0]), byte(0.5 + 0.5 * t[1]), byte(0.5 + 0.5 * t[2]), byte(t[3] * factor)];
+            let texel =
+                |t: &[f32; 4]| [byte(t[0]), byte(0.5 + 0.5 * t[1]), byte(0.5 + 0.5 * t[2]), byte(t[3] * factor)];
             mip.texels.iter().flat_map(texel).collect()
         })
         .collect()
@@ -248,7 +249,11 @@ pub fn crowns() -> Picture {
             let texels = (0..wide * wide).map(|at| {
                 let (x, y) = (at % wide * 2, at / wide * 2);
                 let mean = |c: usize| {
-                    [(0, 0), (1, 0), (0, 1), (1, 1)].iter().map(|(dx, dy)| mip.texels[(y + dy) * mip.size[0] + x + dx][c]).sum::<f32>() / 4.0
+                    [(0, 0), (1, 0), (0, 1), (1, 1)]
+                        .iter()
+                        .map(|(dx, dy)| mip.texels[(y + dy) * mip.size[0] + x + dx][c])
+                        .sum::<f32>()
+                        / 4.0
                 };
                 [mean(0), mean(1), mean(2), mean(3)]
             });
@@ -290,7 +295,11 @@ mod tests {
                 // Leaves are cut out sharply, so alpha in the first mips has few values and many texels cross together;
                 // the last mips have few texels.
                 let step = 6.0 * (mip.len() as f32 / 4.0).recip();
-                assert!((share(mip) - whole).abs() <= step.max(0.05), "picture {number}, mip {level}: {} of {whole}", share(mip));
+                assert!(
+                    (share(mip) - whole).abs() <= step.max(0.05),
+                    "picture {number}, mip {level}: {} of {whole}",
+                    share(mip)
+                );
             }
         }
     }

@@ -99,7 +99,11 @@ fn fewer_plants_are_some_of_the_more() {
         assert!(some.iter().all(|plant| last.contains(plant)), "{share}");
         // A share of independent coins: five deviations of a binomial.
         let expected = f64::from(share) * all.len() as f64;
-        assert!((some.len() as f64 - expected).abs() <= 5.0 * (all.len() as f64 * 0.25).sqrt(), "{share}: {}", some.len());
+        assert!(
+            (some.len() as f64 - expected).abs() <= 5.0 * (all.len() as f64 * 0.25).sqrt(),
+            "{share}: {}",
+            some.len()
+        );
         last = some;
     }
 }

@@ -284,11 +284,7 @@ fn crowns(gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
     })
 }
 
-fn pipeline(
-    device: &wgpu::Device,
-    groups: &[&wgpu::BindGroupLayout; 4],
-    format: TargetFormat,
-) -> wgpu::RenderPipeline {
+fn pipeline(device: &wgpu::Device, groups: &[&wgpu::BindGroupLayout; 4], format: TargetFormat) -> wgpu::RenderPipeline {
     let module = shaders::module(device, "canopy.wgsl");
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("canopy"),
@@ -311,10 +307,7 @@ fn pipeline(
                 attributes: &ATTRIBUTES,
             })],
         },
-        primitive: wgpu::PrimitiveState {
-            cull_mode: Some(wgpu::Face::Back),
-            ..wgpu::PrimitiveState::default()
-        },
+        primitive: wgpu::PrimitiveState { cull_mode: Some(wgpu::Face::Back), ..wgpu::PrimitiveState::default() },
         depth_stencil: format.depth_state(wgpu::CompareFunction::Greater, true),
         multisample: format.multisample(),
         fragment: Some(wgpu::FragmentState {

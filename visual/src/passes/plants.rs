@@ -27,6 +27,8 @@ use vegetation::species::{SHAPES, SPECIES};
 pub const MESH_M: f64 = 200.0;
 /// From where plants are single triangles, metres.
 pub const FAR_M: f64 = 1_900.0;
+/// The nearest that one is: a conifer that changes first; the shader's `card_reach`.
+const NEAREST_FAR_M: f64 = FAR_M * 0.5 * 0.8;
 /// A plant so tall is a mesh up to [`MESH_M`].
 const TALL_M: f32 = 20.0;
 /// Most that a plant may stand above its foot, metres.
@@ -194,8 +196,7 @@ impl Plants {
             // Beyond the near zone the picture's ground is not the one that plants stand on.
             let tier = Tier { reach_m: tier.reach_m.min(near_m.max(500.0)), ..tier };
             let nursery = nursery.clone();
-            let settings =
-                Settings { side_m: tier.side_m, reach_m: tier.reach_m, budget_bytes: BUDGET_BYTES, wait };
+            let settings = Settings { side_m: tier.side_m, reach_m: tier.reach_m, budget_bytes: BUDGET_BYTES, wait };
             let tiles = NearTiles::new(&grid, settings, bytes, move |tile| grow(&nursery, &tier, tile, share));
             TierTiles { tier, tiles, shown: HashMap::new() }
         });
@@ -418,7 +419,9 @@ fn pick(
             continue;
         }
         let mut push = |far| {
-            let last = draws.last_mut().filter(|d: &&mut Draw| d.entry == entry && d.far == far && d.plants.end == plants.start);
+            // Far parts are drawn as one; near ones apart, so that the nearest comes first and hides the others.
+            let joins = |d: &&mut Draw| far && d.entry == entry && d.far && d.plants.end == plants.start;
+            let last = draws.last_mut().filter(joins);
             match last {
                 Some(draw) => {
                     draw.plants.end = plants.end;
@@ -436,7 +439,7 @@ fn pick(
         if f64::from(nearest_m) < FAR_M {
             push(false);
         }
-        if f64::from(farthest_m) > FAR_M {
+        if f64::from(farthest_m) > NEAREST_FAR_M {
             push(true);
         }
         if f64::from(nearest_m) >= MESH_M {
