@@ -15,9 +15,12 @@ use terrain::block::Rings;
 use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
 use terrain::store::World;
 use terrain::{Area, Geodetic};
+use vegetation::place::Nursery;
 use visual::camera::View;
 use visual::gpu::AdapterKind;
+use visual::passes::canopy::{CanopyCounts, CanopyPass};
 use visual::passes::lines::Stroke;
+use visual::passes::plants::{PlantCounts, Plants};
 use visual::passes::terrain::{Terrain, TerrainLook};
 use visual::{Frame, Gpu, Layer, Renderer, Scene};
 
@@ -149,6 +152,12 @@ pub struct Scenery {
     pub look: Look,
     /// The ground on the device.
     pub terrain: Terrain,
+    /// Single plants, where there are any.
+    pub plants: Option<Plants>,
+    /// The closed forest far away, where there is any.
+    pub canopy: Option<CanopyPass>,
+    /// The view last followed.
+    view: Option<View>,
     renderer: Renderer,
 }
 
@@ -176,9 +185,17 @@ impl Scenery {
                 sky_in_background: !look.wait,
             },
         );
-        let window = Window::new(landscape, settings, DVec3::Y);
+        let near_m = settings.rings.radii_m[0];
+        let window = Window::new(landscape.clone(), settings, DVec3::Y);
         let terrain = Terrain::new(&gpu, renderer.frame_layout(), renderer.scene_format(), window, look.ground);
-        Self { gpu, world, area, look, terrain, renderer }
+        let latitude_rad = world.projection.centre().lat_rad;
+        let nursery = (look.content.plants > 0.0).then(|| Arc::new(Nursery::new(landscape, latitude_rad)));
+        let (frame, ground, format) = (renderer.frame_layout(), terrain.bindings().0, renderer.scene_format());
+        let share = look.content.plants.min(1.0);
+        let plants =
+            nursery.as_ref().and_then(|n| Plants::new(&gpu, frame, ground, format, n, share, near_m, look.wait));
+        let canopy = nursery.as_ref().and_then(|n| CanopyPass::new(&gpu, frame, ground, format, n, near_m, look.wait));
+        Self { plants, canopy, gpu, world, area, look, terrain, view: None, renderer }
     }
 
     /// Visibility drawn: as asked, clamped to what the window guarantees, metres.
@@ -216,6 +233,21 @@ impl Scenery {
     pub fn follow(&mut self, view: &View, speed_mps: f64, to_sun: DVec3) {
         self.terrain.follow(&self.gpu, view.eye_m, speed_mps, to_sun);
         self.terrain.prepare(&self.gpu, 0, view);
+        self.view = Some(*view);
+        if let Some(plants) = &mut self.plants {
+            plants.follow(&self.gpu, view.eye_m, speed_mps);
+            plants.prepare(&self.gpu, 0, view);
+        }
+        if let Some(canopy) = &mut self.canopy {
+            canopy.follow(&self.gpu, view.eye_m, speed_mps);
+            canopy.prepare(&self.gpu, 0, view);
+        }
+    }
+
+    /// What stands in the view last followed: single plants, and the closed forest. Looks at every plant.
+    pub fn plants_drawn(&self) -> (PlantCounts, CanopyCounts) {
+        let counted = self.plants.as_ref().zip(self.view.as_ref()).map(|(plants, view)| plants.counts(view));
+        (counted.unwrap_or_default(), self.canopy.as_ref().map_or_else(CanopyCounts::default, CanopyPass::counts))
     }
 
     /// Bytes on the device for what the scene holds.
@@ -250,9 +282,16 @@ impl Scenery {
             time_s,
         };
         let frame = Frame { scene, views: vec![*view], hud };
-        let terrain = &self.terrain;
+        let (terrain, plants, canopy) = (&self.terrain, &self.plants, &self.canopy);
         self.renderer.render(&self.gpu, &frame, &[target], |about, layer, pass| {
             if layer == Layer::Solid {
+                let ground = terrain.bindings().1;
+                if let Some(plants) = plants {
+                    plants.draw(about.index, ground, pass);
+                }
+                if let Some(canopy) = canopy {
+                    canopy.draw(about.index, ground, pass);
+                }
                 terrain.draw(about.index, pass);
             }
         })

@@ -27,6 +27,8 @@ pub struct Fly {
     pub visibility_m: f64,
     /// The ground as drawn.
     pub terrain: Terrain,
+    /// The plants as drawn.
+    pub plants: Plants,
     /// The simulation.
     pub sim: Sim,
     /// Over every mesh drawn, in order. The same in every `--lockstep` run.
@@ -165,6 +167,17 @@ pub struct MemoryBytes {
     /// In the adapter's memory: the window's textures and index lists, the detail texture, the table of blocks and the
     /// ground's uniforms.
     pub payload_gpu: u64,
+}
+
+/// The plants as drawn, in the last frame.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Plants {
+    /// Single plants in sight.
+    pub drawn: u64,
+    /// Stems that the closed forest in sight stands for.
+    pub canopy_stands_for: u64,
+    /// Longest wall time to place a tile's plants; on a busy machine it includes waiting for a processor.
+    pub placed_ms_max: f64,
 }
 
 /// The simulation.

@@ -18,7 +18,8 @@ mod world;
 
 pub use bench::{Bench, BenchResult, Skipped, Yardstick};
 pub use fly::{
-    Adapter, BuildCpuMs, Fly, FrameMs, MemoryBytes, Sim, Terrain, Track, UpdateCpuMs, UploadBytes, World, quantile,
+    Adapter, BuildCpuMs, Fly, FrameMs, MemoryBytes, Plants, Sim, Terrain, Track, UpdateCpuMs, UploadBytes, World,
+    quantile,
 };
 pub use gallery::Gallery;
 pub use height::{HeightPoint, Heights};
@@ -87,7 +88,8 @@ mod tests {
              terrain.update_cpu_ms.p99 terrain.update_cpu_ms.max terrain.build_cpu_ms.mean terrain.build_cpu_ms.max \
              terrain.upload_bytes.max_frame terrain.upload_bytes.total terrain.memory_bytes.posts \
              terrain.memory_bytes.pyramid terrain.memory_bytes.payload_cpu terrain.memory_bytes.payload_gpu \
-             terrain.late_blocks terrain.holes sim.steps sim.hash mesh_hash image_hash shots peak_rss_mib"
+             terrain.late_blocks terrain.holes plants.drawn plants.canopy_stands_for plants.placed_ms_max sim.steps \
+             sim.hash mesh_hash image_hash shots peak_rss_mib"
         );
         let verify = Verify { gpu: Some(Gpu::default()), ..Verify::default() };
         assert_eq!(

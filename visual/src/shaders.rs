@@ -5,8 +5,10 @@
 
 /// Every entry shader by file name.
 pub const SOURCES: &[(&str, &str)] = &[
+    ("canopy.wgsl", include_str!("../../shaders/canopy.wgsl")),
     ("heights.wgsl", include_str!("../../shaders/heights.wgsl")),
     ("lines.wgsl", include_str!("../../shaders/lines.wgsl")),
+    ("plants.wgsl", include_str!("../../shaders/plants.wgsl")),
     ("sky.wgsl", include_str!("../../shaders/sky.wgsl")),
     ("terrain.wgsl", include_str!("../../shaders/terrain.wgsl")),
     ("upscale.wgsl", include_str!("../../shaders/upscale.wgsl")),

@@ -1,8 +1,10 @@
 //! One file a pass, named as its shader. A pass owns its pipeline and buffers and has a plain `draw`.
 
+pub mod canopy;
 pub mod detail;
 pub mod heights;
 pub mod lines;
+pub mod plants;
 pub mod sky;
 pub mod terrain;
 pub mod terrain_textures;
