@@ -12,12 +12,14 @@ use glam::{DQuat, DVec2, DVec3};
 use sim::UtcTime;
 use std::sync::{Arc, Once};
 use terrain::block::Rings;
+use terrain::block::rings::NEAR_RADIUS_M;
 use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
 use terrain::store::World;
 use terrain::{Area, Geodetic};
 use visual::camera::View;
 use visual::gpu::AdapterKind;
 use visual::passes::lines::Stroke;
+use visual::passes::overlay::{OverlayPass, OverlaySettings};
 use visual::passes::terrain::{Terrain, TerrainLook};
 use visual::{Frame, Gpu, Layer, Renderer, Scene};
 
@@ -149,6 +151,8 @@ pub struct Scenery {
     pub look: Look,
     /// The ground on the device.
     pub terrain: Terrain,
+    /// What is draped on it, if the world has anything and the look shows it.
+    overlay: Option<OverlayPass>,
     renderer: Renderer,
 }
 
@@ -176,9 +180,15 @@ impl Scenery {
                 sky_in_background: !look.wait,
             },
         );
-        let window = Window::new(landscape, settings, DVec3::Y);
+        let window = Window::new(landscape.clone(), settings, DVec3::Y);
         let terrain = Terrain::new(&gpu, renderer.frame_layout(), renderer.scene_format(), window, look.ground);
-        Self { gpu, world, area, look, terrain, renderer }
+        let overlay = look.content.overlays.then(|| {
+            let reach_m = rings.radii_m[0].min(NEAR_RADIUS_M);
+            let settings = OverlaySettings { reach_m, wait: look.wait };
+            let ground = terrain.bindings().0;
+            OverlayPass::new(&gpu, renderer.frame_layout(), ground, renderer.scene_format(), landscape, settings)
+        });
+        Self { gpu, world, area, look, terrain, overlay: overlay.flatten(), renderer }
     }
 
     /// Visibility drawn: as asked, clamped to what the window guarantees, metres.
@@ -216,6 +226,15 @@ impl Scenery {
     pub fn follow(&mut self, view: &View, speed_mps: f64, to_sun: DVec3) {
         self.terrain.follow(&self.gpu, view.eye_m, speed_mps, to_sun);
         self.terrain.prepare(&self.gpu, 0, view);
+        if let Some(overlay) = &mut self.overlay {
+            overlay.follow(&self.gpu, view.eye_m, speed_mps);
+            overlay.prepare(0, view, &self.terrain);
+        }
+    }
+
+    /// Blocks and tiles within their reach that were not there when last followed.
+    pub fn late(&self) -> u64 {
+        self.terrain.window().late_blocks() + self.overlay.as_ref().map_or(0, |overlay| overlay.late() as u64)
     }
 
     /// Draws what was last followed, with strokes over it.
@@ -240,10 +259,13 @@ impl Scenery {
             time_s,
         };
         let frame = Frame { scene, views: vec![*view], hud };
-        let terrain = &self.terrain;
+        let (terrain, overlay) = (&self.terrain, &self.overlay);
         self.renderer.render(&self.gpu, &frame, &[target], |about, layer, pass| {
             if layer == Layer::Solid {
                 terrain.draw(about.index, pass);
+                if let Some(overlay) = overlay {
+                    overlay.draw(about.index, terrain, pass);
+                }
             }
         })
     }

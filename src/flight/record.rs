@@ -124,7 +124,7 @@ impl Record {
         }
         self.updated = uploaded > 0;
         self.window_full = !window.is_jumping();
-        self.late_blocks += window.late_blocks();
+        self.late_blocks += scenery.late();
         if self.is_repeatable {
             self.mesh.add(window.mesh_hash());
         }

@@ -43,6 +43,6 @@ pub fn run(args: &ShotArgs, output: Output) -> Result<(), Failure> {
         visibility_m: scenery.visibility_m(),
         triangles_drawn: counts.triangles,
         triangles_all_level0: counts.triangles_all_level0,
-        late_blocks: scenery.terrain.window().late_blocks(),
+        late_blocks: scenery.late(),
     })
 }

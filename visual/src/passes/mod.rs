@@ -3,6 +3,7 @@
 pub mod detail;
 pub mod heights;
 pub mod lines;
+pub mod overlay;
 pub mod sky;
 pub mod terrain;
 pub mod terrain_textures;

@@ -111,7 +111,7 @@ impl Lattice {
     pub fn spot(&self, at: DVec2) -> Option<Spot> {
         let units = ((at - self.corner_m) / self.unit_m).round();
         let most = FARTHEST as f64;
-        (units.abs().max_element() <= most).then_some(Spot { u: units.x as i64, v: units.y as i64 })
+        (units.abs().cmple(DVec2::splat(most)).all()).then_some(Spot { u: units.x as i64, v: units.y as i64 })
     }
 
     /// Plan point of a spot, metres.

@@ -38,7 +38,10 @@ pub fn marks(runway: &Runway) -> Vec<Mark> {
     let length_m = runway.ends[0].distance(runway.ends[1]);
     let width_m = f64::from(runway.width_m);
     let mut marks = Vec::new();
-    if !matches!(runway.surface, Asphalt | Concrete) || length_m < 300.0 || !(12.0..=100.0).contains(&width_m) {
+    if !matches!(runway.surface, Asphalt | Concrete)
+        || !(300.0..=10_000.0).contains(&length_m)
+        || !(12.0..=100.0).contains(&width_m)
+    {
         return marks;
     }
     side_stripes(length_m, width_m, &mut marks);

@@ -109,6 +109,11 @@ impl Vertex {
     pub fn kind(&self) -> u8 {
         (self.east >> PLACE_BITS) as u8
     }
+
+    /// Its bits, in the order of its fields.
+    pub fn words(&self) -> [u32; 5] {
+        [self.east, self.south, self.height_m.to_bits(), self.along_m.to_bits(), self.across]
+    }
 }
 
 /// The triangles of one feature in a block.
