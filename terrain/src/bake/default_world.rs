@@ -1,6 +1,6 @@
 //! The world that is there without any file: Issyk-Kul, baked once into the user's cache.
 //!
-//! The elevation and the lake's outline are embedded; see `assets/README.md` for their sources. The cache folder is
+//! The elevation, the lake's outline and the airfields are embedded; see `assets/README.md` for their sources. The cache folder is
 //! named for the program's version of the format and a sum of the input, so a new one never reads an old world. Two
 //! processes that bake at once both succeed: each writes beside and renames, and the second takes what it finds.
 
@@ -16,9 +16,11 @@ const ELEVATION: Bytes = Bytes {
 };
 const LAKES: Bytes =
     Bytes { name: "lakes.geojson", content: include_bytes!("../../../assets/worlds/issyk_kul/lakes.geojson") };
+const AIRFIELDS: Bytes =
+    Bytes { name: "airfields.csv", content: include_bytes!("../../../assets/worlds/issyk_kul/airfields.csv") };
 
 /// To be raised when the bake makes other posts, or another description, from the same input.
-const BAKE_VERSION: u32 = 3;
+const BAKE_VERSION: u32 = 4;
 
 /// The default world and where it is kept.
 pub struct DefaultWorld {
@@ -65,7 +67,7 @@ pub fn default_request() -> BakeRequest {
     BakeRequest {
         name: "Issyk-Kul".into(),
         sources: vec![(Input::Embedded(ELEVATION), 1.0)],
-        features: vec![Input::Embedded(LAKES)],
+        features: vec![Input::Embedded(LAKES), Input::Embedded(AIRFIELDS)],
         step_m: 200.0,
         centre: Some(Geodetic::from_degrees(42.425, 78.35)),
         size_km: Some([400.0, 400.0]),
@@ -76,6 +78,7 @@ fn folder_name() -> String {
     let mut sum = crc32fast::Hasher::new();
     sum.update(ELEVATION.content);
     sum.update(LAKES.content);
+    sum.update(AIRFIELDS.content);
     format!("issyk_kul-{FORMAT_VERSION}.{BAKE_VERSION}-{:08x}.world", sum.finalize())
 }
 
