@@ -18,6 +18,7 @@ mod report;
 mod scenery;
 mod stage;
 mod still;
+mod things;
 mod thread_time;
 mod trade;
 mod values;

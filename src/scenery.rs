@@ -7,6 +7,7 @@ use crate::args::ViewArgs;
 use crate::failure::Failure;
 use crate::open_world;
 use crate::output;
+use crate::things::Things;
 use crate::values::{Overlay, Quality, Without};
 use glam::{DQuat, DVec2, DVec3};
 use sim::UtcTime;
@@ -15,14 +16,11 @@ use terrain::block::Rings;
 use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
 use terrain::store::World;
 use terrain::{Area, Geodetic};
-use vegetation::place::Nursery;
 use visual::camera::View;
 use visual::gpu::AdapterKind;
-use visual::passes::canopy::{CanopyCounts, CanopyPass};
 use visual::passes::lines::Stroke;
-use visual::passes::plants::{PlantCounts, Plants};
 use visual::passes::terrain::{Terrain, TerrainLook};
-use visual::{Frame, Gpu, Layer, Renderer, Scene};
+use visual::{Frame, Gpu, Renderer, Scene};
 
 /// What of a world is drawn beside its ground. What a world does not have costs nothing whatever stands here.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -152,12 +150,8 @@ pub struct Scenery {
     pub look: Look,
     /// The ground on the device.
     pub terrain: Terrain,
-    /// Single plants, where there are any.
-    pub plants: Option<Plants>,
-    /// The closed forest far away, where there is any.
-    pub canopy: Option<CanopyPass>,
-    /// The view last followed.
-    view: Option<View>,
+    /// What stands on it.
+    pub things: Things,
     renderer: Renderer,
 }
 
@@ -189,13 +183,8 @@ impl Scenery {
         let window = Window::new(landscape.clone(), settings, DVec3::Y);
         let terrain = Terrain::new(&gpu, renderer.frame_layout(), renderer.scene_format(), window, look.ground);
         let latitude_rad = world.projection.centre().lat_rad;
-        let nursery = (look.content.plants > 0.0).then(|| Arc::new(Nursery::new(landscape, latitude_rad)));
-        let (frame, ground, format) = (renderer.frame_layout(), terrain.bindings().0, renderer.scene_format());
-        let share = look.content.plants.min(1.0);
-        let plants =
-            nursery.as_ref().and_then(|n| Plants::new(&gpu, frame, ground, format, n, share, near_m, look.wait));
-        let canopy = nursery.as_ref().and_then(|n| CanopyPass::new(&gpu, frame, ground, format, n, near_m, look.wait));
-        Self { plants, canopy, gpu, world, area, look, terrain, view: None, renderer }
+        let things = Things::new(&gpu, &renderer, &terrain, &landscape, latitude_rad, near_m, &look);
+        Self { gpu, world, area, look, terrain, things, renderer }
     }
 
     /// Visibility drawn: as asked, clamped to what the window guarantees, metres.
@@ -233,31 +222,22 @@ impl Scenery {
     pub fn follow(&mut self, view: &View, speed_mps: f64, to_sun: DVec3) {
         self.terrain.follow(&self.gpu, view.eye_m, speed_mps, to_sun);
         self.terrain.prepare(&self.gpu, 0, view);
-        self.view = Some(*view);
-        if let Some(plants) = &mut self.plants {
-            plants.follow(&self.gpu, view.eye_m, speed_mps);
-            plants.prepare(&self.gpu, 0, view);
-        }
-        if let Some(canopy) = &mut self.canopy {
-            canopy.follow(&self.gpu, view.eye_m, speed_mps);
-            canopy.prepare(&self.gpu, 0, view);
-        }
+        self.things.follow(&self.gpu, &self.terrain, view, speed_mps);
     }
 
-    /// What stands in the view last followed: single plants, and the closed forest. Looks at every plant.
-    pub fn plants_drawn(&self) -> (PlantCounts, CanopyCounts) {
-        let counted = self.plants.as_ref().zip(self.view.as_ref()).map(|(plants, view)| plants.counts(view));
-        (counted.unwrap_or_default(), self.canopy.as_ref().map_or_else(CanopyCounts::default, CanopyPass::counts))
+    /// Blocks and tiles within their reach that were not there when last followed.
+    pub fn late(&self) -> u64 {
+        self.terrain.window().late_blocks() + self.things.late()
     }
 
     /// Bytes on the device for what the scene holds.
     pub fn gpu_bytes(&self) -> usize {
-        self.terrain.gpu_bytes()
+        self.terrain.gpu_bytes() + self.things.gpu_bytes()
     }
 
     /// Whether all that the eye's place asks for is there.
     pub fn is_settled(&self) -> bool {
-        !self.terrain.window().is_jumping() && self.terrain.window().late_blocks() == 0
+        !self.terrain.window().is_jumping() && self.late() == 0
     }
 
     /// Draws what was last followed, with strokes over it.
@@ -282,18 +262,9 @@ impl Scenery {
             time_s,
         };
         let frame = Frame { scene, views: vec![*view], hud };
-        let (terrain, plants, canopy) = (&self.terrain, &self.plants, &self.canopy);
+        let (terrain, things) = (&self.terrain, &self.things);
         self.renderer.render(&self.gpu, &frame, &[target], |about, layer, pass| {
-            if layer == Layer::Solid {
-                let ground = terrain.bindings().1;
-                if let Some(plants) = plants {
-                    plants.draw(about.index, ground, pass);
-                }
-                if let Some(canopy) = canopy {
-                    canopy.draw(about.index, ground, pass);
-                }
-                terrain.draw(about.index, pass);
-            }
+            things.draw(about.index, layer, terrain, pass);
         })
     }
 }

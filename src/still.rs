@@ -59,6 +59,6 @@ pub fn write(scenery: &Scenery, picture: &Picture, out: &Path) -> Result<report:
         visibility_m: scenery.visibility_m(),
         triangles_drawn: counts.triangles,
         triangles_all_level0: counts.triangles_all_level0,
-        late_blocks: scenery.terrain.window().late_blocks(),
+        late_blocks: scenery.late(),
     })
 }

@@ -124,7 +124,7 @@ impl Record {
         }
         self.updated = uploaded > 0;
         self.window_full = !window.is_jumping();
-        self.late_blocks += window.late_blocks();
+        self.late_blocks += scenery.late();
         if self.is_repeatable {
             self.mesh.add(window.mesh_hash());
         }
@@ -167,7 +167,7 @@ impl Record {
         let (world, window) = (&scenery.world, scenery.terrain.window());
         let grid = *world.field.grid();
         let counts = scenery.terrain.counts();
-        let (plants, canopy) = scenery.plants_drawn();
+        let (plants, canopy) = scenery.things.plants_drawn();
         let landscape = window.landscape();
         let build = window.build_cost();
         let mut latency_ms = self.latency_ms.clone();
@@ -230,7 +230,7 @@ impl Record {
             plants: report::Plants {
                 drawn: plants.drawn as u64,
                 canopy_stands_for: canopy.stands_for.round() as u64,
-                placed_ms_max: scenery.plants.as_ref().map_or(0.0, |plants| plants.placed_ms_max()),
+                placed_ms_max: scenery.things.plants_placed_ms_max(),
             },
             sim: Sim { steps: ending.steps, hash: ending.sim_hash.clone() },
             mesh_hash: self.is_repeatable.then(|| self.mesh.shown()),

@@ -28,7 +28,7 @@ pub use sight::{Hit, Sight};
 pub use simulate::{Simulated, Stiffness, TrimFound};
 pub use trade::{Knob, KnobPoint, Trade};
 pub use trajectory::TrajectoryReport;
-pub use verify::{EdgesChecked, Far, Gpu, Near, Verify};
+pub use verify::{Draped, EdgesChecked, Far, Gpu, Near, Verify};
 pub use world::{Cover, Extent, FeatureCount, Lake, Source, Voids, WorldReport};
 
 /// A 64-bit hash as it is reported.
@@ -91,13 +91,14 @@ mod tests {
              terrain.late_blocks terrain.holes plants.drawn plants.canopy_stands_for plants.placed_ms_max sim.steps \
              sim.hash mesh_hash image_hash shots peak_rss_mib"
         );
-        let verify = Verify { gpu: Some(Gpu::default()), ..Verify::default() };
+        let verify = Verify { overlay: Some(Draped::default()), gpu: Some(Gpu::default()), ..Verify::default() };
         assert_eq!(
             names(&verify),
             "t_junctions position_mismatches edges_checked.templates edges_checked.pairs edges_checked.window eyes \
              far.error_max_m far.errors_max_m far.limits_m far.violations pop.max_px pop.max_move_m pop.max_grey \
              pop.max_grey_any pop.worst_pixel_grey pop.grey_switches pop.switches pop.track_km near.height_changes \
-             near.max_difference_m near.places gpu.vertices_checked gpu.height_mismatches gpu.position_mismatches \
+             near.max_difference_m near.places overlay.blocks overlay.vertices overlay.triangles overlay.t_junctions \
+             overlay.border_mismatches overlay.crossings overlay.max_height_error_m gpu.vertices_checked gpu.height_mismatches gpu.position_mismatches \
              gpu.pixels_checked gpu.pixels_outside gpu.pixels_excluded"
         );
         let one_of = |what: &str| BTreeMap::from([(what.to_owned(), 1)]);

@@ -19,6 +19,8 @@ pub struct Verify {
     pub pop: Pop,
     /// Within the near radius.
     pub near: Near,
+    /// What is draped on the ground; null where there is nothing.
+    pub overlay: Option<Draped>,
     /// The picture against the ground; null without an adapter.
     pub gpu: Option<Gpu>,
 }
@@ -77,6 +79,39 @@ pub struct Near {
     pub max_difference_m: f64,
     /// Places where the drawn surface was compared with the ground.
     pub places: u64,
+}
+
+/// What is draped on the ground.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Draped {
+    /// Blocks looked at.
+    pub blocks: u64,
+    /// Their vertices.
+    pub vertices: u64,
+    /// Their triangles.
+    pub triangles: u64,
+    /// Edges that meet only a part of another. Must be 0.
+    pub t_junctions: u64,
+    /// What two blocks do not have alike at their border. Must be 0.
+    pub border_mismatches: u64,
+    /// Triangles that reach over a cell's edge or diagonal. Must be 0.
+    pub crossings: u64,
+    /// Largest difference from the ground query.
+    pub max_height_error_m: f64,
+}
+
+impl From<terrain::verify::overlay::Draped> for Draped {
+    fn from(found: terrain::verify::overlay::Draped) -> Self {
+        Self {
+            blocks: found.blocks,
+            vertices: found.vertices,
+            triangles: found.triangles,
+            t_junctions: found.t_junctions,
+            border_mismatches: found.border_mismatches,
+            crossings: found.crossings,
+            max_height_error_m: found.max_height_error_m,
+        }
+    }
 }
 
 /// The picture against the ground.

@@ -19,6 +19,7 @@ use terrain::verify::cracks::{self, Cracks, Sheet};
 use terrain::verify::far;
 use terrain::verify::flight::Flight;
 use terrain::verify::near::Near;
+use terrain::verify::overlay;
 use terrain::verify::pop::{self, Pop};
 use visual::Scene;
 use visual::passes::terrain::eye_uniforms;
@@ -43,6 +44,12 @@ const POP_GREY: f64 = 2.0;
 /// Share of pixels that may lie on silhouettes.
 const EXCLUDED: f64 = 0.02;
 
+/// Most blocks whose overlays are looked at.
+const OVERLAY_BLOCKS: usize = 600;
+
+/// What is draped may be off the ground by the rounding of its height: half an ulp of an f32 at 16 km at most, metres.
+const DRAPED_M: f64 = 0.001;
+
 /// Where the post step is no whole number of metres, places and so heights are rounded: by this at most, metres.
 const ROUNDING_M: f64 = 1e-9;
 
@@ -66,6 +73,10 @@ pub fn run(args: &VerifyArgs, output: Output) -> Result<(), Failure> {
             limits_m: rings.limits_m.to_vec(),
             violations: far.violations,
         };
+    }
+    if terrain::block::overlay::any(&landscape.features) {
+        let bar = Progress::new("what is draped on the ground");
+        report.overlay = Some(overlay::look(&landscape, OVERLAY_BLOCKS, |share| bar.show(share)).into());
     }
     let pops = flights(&landscape, &rings, &mut report);
     let due = picture(&world, landscape, rings, &pops, &mut report)?;
@@ -119,6 +130,20 @@ fn broken(report: &report::Verify, due: Due) -> Vec<String> {
         near.max_difference_m <= ROUNDING_M,
         format!("expected the near surface to be the ground, found {} m between them", near.max_difference_m),
     );
+    if let Some(draped) = &report.overlay {
+        promise(
+            draped.t_junctions == 0 && draped.border_mismatches == 0 && draped.crossings == 0,
+            format!(
+                "expected what is draped to have no seam, found {} T-junctions, {} differences at borders, {} triangles \
+                 across an edge of the ground",
+                draped.t_junctions, draped.border_mismatches, draped.crossings
+            ),
+        );
+        promise(
+            draped.max_height_error_m <= DRAPED_M,
+            format!("expected what is draped within {DRAPED_M} m of the ground, found {}", draped.max_height_error_m),
+        );
+    }
     if let Some(gpu) = &report.gpu {
         promise(
             gpu.pixels_checked >= due.pixels,

@@ -26,4 +26,4 @@ pub use gpu::{Gpu, GpuError};
 pub use renderer::{Layer, Renderer, SceneView, Settings};
 
 // Named in signatures; whoever draws needs no wgpu of its own.
-pub use wgpu::{Texture, TextureFormat, TextureView};
+pub use wgpu::{RenderPass, Texture, TextureFormat, TextureView};

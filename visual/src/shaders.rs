@@ -9,6 +9,7 @@ pub const SOURCES: &[(&str, &str)] = &[
     ("heights.wgsl", include_str!("../../shaders/heights.wgsl")),
     ("lines.wgsl", include_str!("../../shaders/lines.wgsl")),
     ("plants.wgsl", include_str!("../../shaders/plants.wgsl")),
+    ("overlay.wgsl", include_str!("../../shaders/overlay.wgsl")),
     ("sky.wgsl", include_str!("../../shaders/sky.wgsl")),
     ("terrain.wgsl", include_str!("../../shaders/terrain.wgsl")),
     ("upscale.wgsl", include_str!("../../shaders/upscale.wgsl")),

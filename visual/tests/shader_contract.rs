@@ -171,7 +171,7 @@ fn the_windows_uniforms_and_table_of_blocks_are_the_same_on_both_sides() {
         assert_eq!(length.get(), MAX_BLOCKS * MAX_BLOCKS, "{name}");
         assert_eq!(stride as usize, size_of::<BlockEntry>(), "{name}");
     }
-    assert_eq!(seen, 2, "terrain.wgsl and heights.wgsl place posts");
+    assert_eq!(seen, 3, "terrain.wgsl, overlay.wgsl and heights.wgsl place posts");
 }
 
 #[test]
@@ -243,6 +243,46 @@ fn the_counter_of_reads_sees_loops_calls_and_branches() {
     let module = naga::front::wgsl::parse_str(source).expect("the test's own shader");
     let counts: Vec<_> = module.entry_points.iter().map(|entry| samples(&module, entry)).collect();
     assert_eq!(counts, [(3, false), (2, true)]);
+}
+
+#[test]
+fn what_is_draped_has_the_same_numbers_on_both_sides() {
+    use terrain::block::overlay::{ACROSS_PER_METRE, EXTENT_PER_METRE, Kind, PLACE_BITS, Vertex, lattice};
+    let source = shaders::joined("overlay.wgsl");
+    let kinds = [
+        ("WATER", Kind::Water),
+        ("PATH", Kind::Path),
+        ("TRACK", Kind::Track),
+        ("GRAVEL", Kind::Gravel),
+        ("LANE", Kind::Lane),
+        ("ROAD", Kind::Road),
+        ("MOTORWAY", Kind::Motorway),
+        ("RAILWAY", Kind::Railway),
+        ("APRON", Kind::Apron),
+        ("TAXIWAY", Kind::Taxiway),
+        ("RUNWAY_ASPHALT", Kind::RunwayAsphalt),
+        ("RUNWAY_CONCRETE", Kind::RunwayConcrete),
+        ("RUNWAY_GRAVEL", Kind::RunwayGravel),
+        ("RUNWAY_GRASS", Kind::RunwayGrass),
+        ("WHITE", Kind::White),
+    ];
+    let mut lines: Vec<String> =
+        kinds.iter().map(|(name, kind)| format!("const {name}: u32 = {}u;", *kind as u32)).collect();
+    lines.push(format!("const PLACE_BITS: u32 = {PLACE_BITS}u;"));
+    lines.push(format!("const ACROSS_PER_METRE: f32 = {ACROSS_PER_METRE:.1};"));
+    lines.push(format!("const EXTENT_PER_METRE: f32 = {EXTENT_PER_METRE:.1};"));
+    lines.push(format!("const UNITS: f32 = {:.1};", lattice::UNITS as f64));
+    for line in lines {
+        assert!(source.contains(&line), "expected \"{line}\" in overlay.wgsl");
+    }
+    let offsets = [
+        offset_of!(Vertex, east),
+        offset_of!(Vertex, south),
+        offset_of!(Vertex, height_m),
+        offset_of!(Vertex, along_m),
+        offset_of!(Vertex, across),
+    ];
+    assert_eq!((offsets, size_of::<Vertex>()), ([0, 4, 8, 12, 16], 20));
 }
 
 #[test]

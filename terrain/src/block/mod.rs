@@ -14,6 +14,7 @@ pub mod ground_map;
 pub mod light;
 pub mod mask;
 pub mod mesh;
+pub mod overlay;
 
 pub mod payload;
 pub mod rings;

@@ -8,5 +8,6 @@ pub mod cracks;
 pub mod far;
 pub mod flight;
 pub mod near;
+pub mod overlay;
 pub mod pop;
 pub mod surface;

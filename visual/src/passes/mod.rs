@@ -4,6 +4,7 @@ pub mod canopy;
 pub mod detail;
 pub mod heights;
 pub mod lines;
+pub mod overlay;
 pub mod plants;
 pub mod sky;
 pub mod terrain;

@@ -1,0 +1,269 @@
+// overlay.wgsl: what is draped on the near ground: roads, railways, running water, airfields and their paint.
+// Reads:  group 0 frame; group 1 the window: table of blocks, light maps. Vertex buffer: terrain::block::overlay::Vertex.
+//         An instance is the slot of the block that the vertices belong to.
+// Writes: display colour blended over the ground; depth is tested and not written.
+// Host:   visual/src/passes/overlay.rs
+// Twin:   kinds and packing: terrain::block::overlay (numbers compared in visual/tests/shader_contract.rs).
+// Invariant: a vertex lies in a triangle of level 0, placed from whole-number differences like a post; towards the eye it
+//         is moved in depth alone, by DEPTH_SHARE of its distance.
+
+//!include "shared/frame.wgsl"
+//!include "shared/sky.wgsl"
+//!include "shared/display.wgsl"
+//!include "shared/posts.wgsl"
+//!include "shared/light.wgsl"
+
+const PLACE_BITS: u32 = 22u;
+const ACROSS_PER_METRE: f32 = 256.0;
+const EXTENT_PER_METRE: f32 = 8.0;
+const UNITS: f32 = 65536.0;
+
+const WATER: u32 = 0u;
+const PATH: u32 = 1u;
+const TRACK: u32 = 2u;
+const GRAVEL: u32 = 3u;
+const LANE: u32 = 4u;
+const ROAD: u32 = 5u;
+const MOTORWAY: u32 = 6u;
+const RAILWAY: u32 = 7u;
+const APRON: u32 = 8u;
+const TAXIWAY: u32 = 9u;
+const RUNWAY_ASPHALT: u32 = 10u;
+const RUNWAY_CONCRETE: u32 = 11u;
+const RUNWAY_GRAVEL: u32 = 12u;
+const RUNWAY_GRASS: u32 = 13u;
+const WHITE: u32 = 14u;
+
+// Depth of a large triangle near the eye is interpolated to some 1e-5 of the distance; a crest hides what lies 1.5 m
+// behind it at 10 km.
+const DEPTH_SHARE: f32 = 1.5e-4;
+
+struct Draped {
+    @builtin(position) clip: vec4<f32>,
+    // Column and row in the block, in posts.
+    @location(0) local: vec2<f32>,
+    @location(1) haze: vec4<f32>,
+    // Along and across the feature, metres.
+    @location(2) place_m: vec2<f32>,
+    @location(3) relative_m: vec3<f32>,
+    // Radiance of the sky mirrored in still water.
+    @location(4) mirrored: vec3<f32>,
+    // Half the width and half the length, metres; 0: no edge to be smoothed.
+    @location(5) @interpolate(flat) half_m: vec2<f32>,
+    @location(6) @interpolate(flat) kind: u32,
+    @location(7) @interpolate(flat) slot: vec2<f32>,
+}
+
+@vertex
+fn overlay_vertex(
+    @builtin(instance_index) slot: u32,
+    @location(0) places: vec2<u32>,
+    @location(1) height_m: f32,
+    @location(2) along_m: f32,
+    @location(3) across: u32,
+) -> Draped {
+    let block = blocks[slot];
+    let units = places & vec2<u32>((1u << PLACE_BITS) - 1u);
+    let cell = units >> vec2<u32>(16u);
+    let share = vec2<f32>(units & vec2<u32>(0xffffu)) / UNITS;
+    // As in post_of: whole numbers first.
+    let away = vec2<f32>(block.first_post + vec2<i32>(cell) - window.eye_post);
+    let plan_m = (away * window.step_m - window.eye_fraction_m) + share * window.step_m;
+    let relative_m = vec3<f32>(plan_m.x, (height_m - frame.eye_high_m.y) - frame.eye_low_m.y, plan_m.y);
+
+    var draped: Draped;
+    draped.clip = frame.clip_from_relative * vec4<f32>(relative_m, 1.0);
+    draped.clip.z *= 1.0 + DEPTH_SHARE;
+    draped.local = vec2<f32>(cell) + share;
+    draped.haze = haze(relative_m);
+    let across_m = f32(bitcast<i32>(across << 16u) >> 16u) / ACROSS_PER_METRE;
+    draped.place_m = vec2<f32>(along_m, across_m);
+    draped.relative_m = relative_m;
+    draped.half_m = vec2<f32>(f32(across >> 16u) / ACROSS_PER_METRE, f32(places.y >> PLACE_BITS) / EXTENT_PER_METRE);
+    draped.kind = places.x >> PLACE_BITS;
+    draped.slot = vec2<f32>(f32(slot % u32(block.side)), f32(slot / u32(block.side)));
+    draped.mirrored = vec3<f32>(0.0);
+    if draped.kind == WATER {
+        let direction = normalize(relative_m);
+        // Waves tilt the mirror, so even a grazing view sees sky a little above the horizon.
+        draped.mirrored = sky_radiance(normalize(vec3<f32>(direction.x, abs(direction.y) + 0.06, direction.z)));
+    }
+    return draped;
+}
+
+// Share of a pixel of `pixel_m` that a line of half a width covers, `away_m` from its middle.
+fn line(away_m: f32, half_m: f32, pixel_m: f32) -> f32 {
+    let low = max(away_m - 0.5 * pixel_m, -half_m);
+    let high = min(away_m + 0.5 * pixel_m, half_m);
+    return clamp((high - low) / pixel_m, 0.0, 1.0);
+}
+
+// The same of dashes `dash_m` long and `gap_m` apart; where a pixel holds several, their share.
+fn dashes(along_m: f32, dash_m: f32, gap_m: f32, pixel_m: f32) -> f32 {
+    let period_m = dash_m + gap_m;
+    let away_m = abs(fract(along_m / period_m) - 0.5) * period_m;
+    return mix(line(away_m, 0.5 * dash_m, pixel_m), dash_m / period_m, smoothstep(0.4, 1.0, pixel_m / period_m));
+}
+
+// Smooth noise, mean 0.5, with cells of 1.
+fn speck(at: vec2<f32>) -> f32 {
+    let cell = floor(at);
+    let within = at - cell;
+    let soft = within * within * (3.0 - 2.0 * within);
+    let top = mix(hash(cell), hash(cell + vec2<f32>(1.0, 0.0)), soft.x);
+    let bottom = mix(hash(cell + vec2<f32>(0.0, 1.0)), hash(cell + vec2<f32>(1.0, 1.0)), soft.x);
+    return mix(top, bottom, soft.y);
+}
+
+// D. Hoskins. Hash without sine, 2014: the form for two numbers to one.
+fn hash(cell: vec2<f32>) -> f32 {
+    var p = fract(vec3<f32>(cell.xyx) * 0.1031);
+    p += dot(p, p.yzx + 33.33);
+    return fract((p.x + p.y) * p.z);
+}
+
+// Speck of cells of `size_m`, gone where a pixel is as large.
+fn grain(place_m: vec2<f32>, size_m: f32, pixel_m: f32) -> f32 {
+    return mix(speck(place_m / size_m) - 0.5, 0.0, smoothstep(0.4, 1.0, pixel_m / size_m));
+}
+
+const ASPHALT: vec3<f32> = vec3<f32>(0.095, 0.096, 0.10);
+const CONCRETE: vec3<f32> = vec3<f32>(0.27, 0.26, 0.24);
+const PAINT: vec3<f32> = vec3<f32>(0.58, 0.58, 0.56);
+const YELLOW: vec3<f32> = vec3<f32>(0.55, 0.36, 0.04);
+
+fn road(kind: u32, at_m: vec2<f32>, half_m: f32, pixel_m: vec2<f32>) -> vec3<f32> {
+    let worn = grain(at_m, 6.0, pixel_m.x) * 0.25 + grain(at_m * vec2<f32>(0.3, 3.0), 2.0, pixel_m.y) * 0.18;
+    var albedo = ASPHALT * (1.15 + worn);
+    if kind == LANE {
+        return albedo * 1.1;
+    }
+    let side = abs(at_m.y);
+    // Lines along the edges, and dashes between lanes.
+    var paint = line(side - (half_m - 0.3), 0.075, pixel_m.y);
+    if kind == ROAD {
+        paint += line(at_m.y, 0.07, pixel_m.y) * dashes(at_m.x, 3.0, 6.0, pixel_m.x);
+    } else {
+        // A strip of grass between carriageways of two lanes each.
+        let strip_m = clamp(half_m - 8.5, 0.3, 3.0);
+        albedo = mix(albedo, vec3<f32>(0.07, 0.095, 0.03), line(at_m.y, strip_m, pixel_m.y));
+        paint += line(side - (strip_m + 0.35), 0.075, pixel_m.y);
+        let middle_m = 0.5 * (strip_m + half_m);
+        paint += line(side - middle_m, 0.075, pixel_m.y) * dashes(at_m.x, 4.0, 8.0, pixel_m.x);
+    }
+    return mix(albedo, PAINT, min(paint, 1.0) * 0.85);
+}
+
+fn rails(at_m: vec2<f32>, pixel_m: vec2<f32>) -> vec3<f32> {
+    let ballast = vec3<f32>(0.16, 0.145, 0.13) * (1.0 + grain(at_m, 0.7, pixel_m.y) * 0.5);
+    let sleeper = line(at_m.y, 1.3, pixel_m.y) * dashes(at_m.x, 0.25, 0.35, pixel_m.x);
+    // Gauge 1.435 m between the rails' inner sides.
+    let rail = line(abs(at_m.y) - 0.755, 0.04, pixel_m.y);
+    return mix(mix(ballast, vec3<f32>(0.10, 0.09, 0.08), sleeper), vec3<f32>(0.05, 0.04, 0.035), rail);
+}
+
+fn gravel(kind: u32, at_m: vec2<f32>, pixel_m: vec2<f32>) -> vec3<f32> {
+    let stones = grain(at_m, 0.5, pixel_m.y) * 0.3 + grain(at_m, 5.0, pixel_m.x) * 0.25;
+    let pale = vec3<f32>(0.29, 0.25, 0.185) * (1.0 + stones);
+    if kind != TRACK {
+        return pale;
+    }
+    // Grass grows between the wheels.
+    let green = line(at_m.y + grain(at_m, 3.0, pixel_m.y) * 0.4, 0.35, pixel_m.y);
+    return mix(pale, vec3<f32>(0.10, 0.12, 0.045), green * 0.7);
+}
+
+fn slabs(at_m: vec2<f32>, pixel_m: f32) -> vec3<f32> {
+    let slab = floor(at_m / 7.5);
+    let within = abs(fract(at_m / 7.5) - 0.5) * 7.5;
+    let near = 1.0 - smoothstep(0.4, 1.0, pixel_m / 7.5);
+    let joint = max(line(3.75 - within.x, 0.05, pixel_m), line(3.75 - within.y, 0.05, pixel_m)) * near;
+    let shade = 1.0 + (hash(slab) - 0.5) * 0.16 * near + grain(at_m, 2.5, pixel_m) * 0.1;
+    return CONCRETE * shade * (1.0 - 0.5 * joint);
+}
+
+fn runway(kind: u32, at_m: vec2<f32>, half_m: f32, pixel_m: vec2<f32>) -> vec3<f32> {
+    if kind == RUNWAY_GRASS {
+        // Mown along.
+        let mown = dashes(at_m.y, 3.0, 3.0, pixel_m.y) * 0.16;
+        return vec3<f32>(0.085, 0.12, 0.038) * (0.92 + mown + grain(at_m, 4.0, pixel_m.x) * 0.2);
+    }
+    if kind == RUNWAY_GRAVEL {
+        return gravel(GRAVEL, at_m, pixel_m);
+    }
+    var albedo = ASPHALT * (1.05 + grain(at_m * vec2<f32>(0.25, 1.0), 5.0, pixel_m.y) * 0.22);
+    if kind == RUNWAY_CONCRETE {
+        albedo = slabs(at_m, max(pixel_m.x, pixel_m.y)) * 0.9;
+    }
+    // Rubber where wheels touch down, mostly 200 to 700 m from the threshold and 2 to 5 m from the middle.
+    let from_m = at_m.x - 420.0;
+    let along = exp(from_m * from_m * (-1.0 / 62500.0)) + 0.25 * exp(at_m.x * at_m.x * (-1.0 / 1e6));
+    let off_m = abs(at_m.y) - 3.2;
+    let across = exp(off_m * off_m * (-1.0 / 5.0));
+    let streaks = 0.75 + 0.5 * grain(at_m * vec2<f32>(0.02, 1.6), 1.0, pixel_m.y);
+    return albedo * (1.0 - 0.6 * min(along * across * streaks, 1.0));
+}
+
+@fragment
+fn overlay_fragment(draped: Draped) -> @location(0) vec4<f32> {
+    let right = dpdx(draped.place_m);
+    let down = dpdy(draped.place_m);
+    // What a pixel spans along and across.
+    let pixel_m = max(sqrt(right * right + down * down), vec2<f32>(1e-4));
+    let light = light_at(draped.local, draped.slot);
+    let at_m = draped.place_m;
+    let half_m = draped.half_m;
+    let kind = draped.kind;
+
+    var cover = 1.0;
+    if half_m.x > 0.0 {
+        // Smooth inwards over a pixel; what is thinner than a pixel fades and does not crawl.
+        cover = clamp((half_m.x - abs(at_m.y)) / pixel_m.y, 0.0, 1.0) * smoothstep(0.6, 1.6, 2.0 * half_m.x / pixel_m.y);
+    } else if kind == WHITE {
+        cover = 1.0 - smoothstep(0.5, 1.5, pixel_m.y);
+    }
+    if half_m.y > 0.0 {
+        cover *= clamp((half_m.y - abs(at_m.x)) / pixel_m.x, 0.0, 1.0);
+    }
+
+    var colour = vec3<f32>(0.0);
+    if kind == WATER {
+        colour = water(draped, light, pixel_m);
+    } else {
+        var albedo = PAINT;
+        if kind == RAILWAY {
+            albedo = rails(at_m, pixel_m);
+        } else if kind == PATH || kind == TRACK || kind == GRAVEL {
+            albedo = gravel(kind, at_m, pixel_m);
+        } else if kind == LANE || kind == ROAD || kind == MOTORWAY {
+            albedo = road(kind, at_m, half_m.x, pixel_m);
+        } else if kind == APRON {
+            albedo = slabs(at_m, max(pixel_m.x, pixel_m.y));
+        } else if kind == TAXIWAY {
+            albedo = ASPHALT * (1.5 + grain(at_m, 5.0, pixel_m.x) * 0.25);
+            albedo = mix(albedo, YELLOW, line(at_m.y, 0.12, pixel_m.y));
+        } else if kind < WHITE {
+            albedo = runway(kind, at_m, half_m.x, pixel_m);
+        } else {
+            albedo = PAINT * (1.0 + grain(at_m, 1.2, pixel_m.x) * 0.25);
+        }
+        colour = lit(albedo, light, vec2<f32>(0.0));
+    }
+    return vec4<f32>(shown(colour, draped.haze, draped.clip.xy).rgb, cover);
+}
+
+fn water(draped: Draped, light: vec4<f32>, pixel_m: vec2<f32>) -> vec3<f32> {
+    let distance_m = length(draped.relative_m);
+    let to_eye = draped.relative_m * (-1.0 / distance_m);
+    // Ripples drift downstream at a metre a second.
+    let at = vec2<f32>(draped.place_m.x - frame.time_s, draped.place_m.y);
+    let tilt = vec2<f32>(grain(at, 2.2, pixel_m.x), grain(at.yx + 17.0, 1.7, pixel_m.x)) * 0.22;
+    let normal = normalize(vec3<f32>(tilt.x, 1.0, tilt.y));
+    let out = 1.0 - clamp(dot(normal, to_eye), 0.0, 1.0);
+    // As in terrain.wgsl: Schlick, water's 2 % face on.
+    let fresnel = 0.02 + 0.62 * (out * out) * (out * out) * out;
+    // The bed shows at the banks.
+    let shallow = smoothstep(0.55, 1.0, abs(draped.place_m.y) / max(draped.half_m.x, 0.1));
+    let bed = mix(vec3<f32>(0.028, 0.045, 0.042), vec3<f32>(0.085, 0.085, 0.062), shallow);
+    return lit(bed, light, vec2<f32>(0.0)) * (1.0 - fresnel) + draped.mirrored * fresnel;
+}

@@ -1,0 +1,112 @@
+//! All that stands and lies on the ground of a scenery: what is draped on it, plants, forests.
+//!
+//! Each kind is there only if the world has something of it and the look shows it: no pass, no thread, no byte else.
+
+use crate::scenery::Look;
+use glam::DVec3;
+use std::sync::Arc;
+use terrain::block::Landscape;
+use terrain::block::rings::NEAR_RADIUS_M;
+use vegetation::place::Nursery;
+use visual::camera::View;
+use visual::passes::canopy::{CanopyCounts, CanopyPass};
+use visual::passes::overlay::{OverlayPass, OverlaySettings};
+use visual::passes::plants::{PlantCounts, Plants};
+use visual::passes::terrain::Terrain;
+use visual::{Gpu, Layer, RenderPass, Renderer};
+
+/// See the module.
+pub struct Things {
+    overlay: Option<OverlayPass>,
+    plants: Option<Plants>,
+    canopy: Option<CanopyPass>,
+    /// The view last followed.
+    view: Option<View>,
+}
+
+impl Things {
+    /// Prepares what a look shows of a landscape; `near_m` is the near zone's radius.
+    pub fn new(
+        gpu: &Gpu,
+        renderer: &Renderer,
+        terrain: &Terrain,
+        landscape: &Arc<Landscape>,
+        latitude_rad: f64,
+        near_m: f64,
+        look: &Look,
+    ) -> Self {
+        let (frame, ground, format) = (renderer.frame_layout(), terrain.bindings().0, renderer.scene_format());
+        let near_m = near_m.min(NEAR_RADIUS_M);
+        let overlay = look.content.overlays.then(|| {
+            let settings = OverlaySettings { reach_m: near_m, wait: look.wait };
+            OverlayPass::new(gpu, frame, ground, format, landscape.clone(), settings)
+        });
+        let share = look.content.plants.min(1.0);
+        let nursery = (share > 0.0).then(|| Arc::new(Nursery::new(landscape.clone(), latitude_rad)));
+        let plants =
+            nursery.as_ref().and_then(|n| Plants::new(gpu, frame, ground, format, n, share, near_m, look.wait));
+        let canopy = nursery.as_ref().and_then(|n| CanopyPass::new(gpu, frame, ground, format, n, near_m, look.wait));
+        Self { overlay: overlay.flatten(), plants, canopy, view: None }
+    }
+
+    /// Streams around the eye and culls for a view. The terrain must have followed already.
+    pub fn follow(&mut self, gpu: &Gpu, terrain: &Terrain, view: &View, speed_mps: f64) {
+        let eye_m: DVec3 = view.eye_m;
+        if let Some(overlay) = &mut self.overlay {
+            overlay.follow(gpu, eye_m, speed_mps);
+            overlay.prepare(0, view, terrain);
+        }
+        if let Some(plants) = &mut self.plants {
+            plants.follow(gpu, eye_m, speed_mps);
+            plants.prepare(gpu, 0, view);
+        }
+        if let Some(canopy) = &mut self.canopy {
+            canopy.follow(gpu, eye_m, speed_mps);
+            canopy.prepare(gpu, 0, view);
+        }
+        self.view = Some(*view);
+    }
+
+    /// Records a layer of a followed view; `ground` draws the blocks.
+    pub fn draw(&self, view_index: usize, layer: Layer, terrain: &Terrain, pass: &mut RenderPass<'_>) {
+        match layer {
+            Layer::Solid => {
+                // What stands up hides ground behind it, which then costs no pixels.
+                if let Some(plants) = &self.plants {
+                    plants.draw(view_index, terrain.bindings().1, pass);
+                }
+                if let Some(canopy) = &self.canopy {
+                    canopy.draw(view_index, terrain.bindings().1, pass);
+                }
+                terrain.draw(view_index, pass);
+                if let Some(overlay) = &self.overlay {
+                    overlay.draw(view_index, terrain, pass);
+                }
+            }
+            Layer::Blended => {}
+        }
+    }
+
+    /// What stands in the view last followed: single plants, and the closed forest. Looks at every plant.
+    pub fn plants_drawn(&self) -> (PlantCounts, CanopyCounts) {
+        let counted = self.plants.as_ref().zip(self.view.as_ref()).map(|(plants, view)| plants.counts(view));
+        (counted.unwrap_or_default(), self.canopy.as_ref().map_or_else(CanopyCounts::default, CanopyPass::counts))
+    }
+
+    /// Longest time that placing the plants of a tile took, milliseconds; 0 without plants.
+    pub fn plants_placed_ms_max(&self) -> f64 {
+        self.plants.as_ref().map_or(0.0, Plants::placed_ms_max)
+    }
+
+    /// Tiles within their reach that were not there when last followed.
+    pub fn late(&self) -> u64 {
+        let overlay = self.overlay.as_ref().map_or(0, OverlayPass::late);
+        let plants = self.plants.as_ref().map_or(0, Plants::late);
+        (overlay + plants) as u64
+    }
+
+    /// Bytes on the device.
+    pub fn gpu_bytes(&self) -> usize {
+        self.overlay.as_ref().map_or(0, OverlayPass::gpu_bytes)
+    }
+}

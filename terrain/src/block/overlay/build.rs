@@ -1,0 +1,179 @@
+//! A block's overlay: the features that touch it, cut to its ground and packed for the GPU.
+
+use super::clip::{CellSquare, Polygon};
+use super::lattice::{self, Lattice, Spot, UNITS};
+use super::source::{Item, Shape, Source, Sources, on_runway};
+use super::{ACROSS_PER_METRE, EXTENT_PER_METRE, Kind, Overlay, PLACE_BITS, Part, Vertex};
+use crate::block::payload::Landscape;
+use crate::field::Field;
+use crate::grid::{BlockIndex, CELLS};
+use glam::DVec2;
+use std::sync::Arc;
+
+/// Most vertices of a block: 80 MiB. What comes beyond is not drawn.
+const MOST_VERTICES: usize = 1 << 22;
+
+/// Makes the overlays of a world's blocks.
+#[derive(Debug)]
+pub struct Overlays {
+    field: Arc<Field>,
+    lattice: Lattice,
+    sources: Sources,
+}
+
+/// Along and across of a plan point, and what else a vertex says.
+#[derive(Clone, Copy)]
+struct Frame {
+    kind: Kind,
+    origin: Spot,
+    along: DVec2,
+    /// To the right of along, and longer than 1 where the ground is steep.
+    across: DVec2,
+    start_m: f64,
+    half_m: f64,
+    half_length_m: f64,
+}
+
+impl Overlays {
+    /// Of a landscape; makes ready all its features.
+    pub fn new(landscape: &Landscape) -> Self {
+        let field = landscape.ground.field().clone();
+        Self { lattice: Lattice::of(field.grid()), sources: Sources::new(&landscape.features, &field), field }
+    }
+
+    /// Blocks that have anything, row by row.
+    pub fn blocks(&self) -> Vec<BlockIndex> {
+        let mut blocks: Vec<BlockIndex> = self.sources.blocks().collect();
+        blocks.sort_by_key(|block| (block.z, block.x));
+        blocks
+    }
+
+    /// What lies on a block.
+    pub fn block(&self, block: BlockIndex) -> Overlay {
+        let mut overlay = Overlay::default();
+        let mut drape = Drape {
+            field: &self.field,
+            lattice: self.lattice,
+            square: CellSquare { column: block.first_column(), row: block.first_row(), cells: i64::from(CELLS) },
+            overlay: &mut overlay,
+        };
+        for item in self.sources.of_block(block) {
+            let Some(source) = self.sources.sources.get(item.source as usize) else { continue };
+            let first = drape.overlay.indices.len() as u32;
+            drape.item(source, item);
+            let count = drape.overlay.indices.len() as u32 - first;
+            if count > 0 {
+                drape.overlay.parts.push(Part { source: item.source, first, count });
+            }
+        }
+        overlay
+    }
+}
+
+struct Drape<'a> {
+    field: &'a Field,
+    lattice: Lattice,
+    square: CellSquare,
+    overlay: &'a mut Overlay,
+}
+
+impl Drape<'_> {
+    fn item(&mut self, source: &Source, item: &Item) {
+        let things = item.first as usize..(item.first + item.count) as usize;
+        match &source.shape {
+            Shape::Ribbon { ribbon, along_m } => {
+                for segment in things {
+                    let field = self.field;
+                    let lattice = self.lattice;
+                    ribbon.segment(field, &lattice, segment, |quad| {
+                        let right = DVec2::new(-quad.along.y, quad.along.x);
+                        let frame = Frame {
+                            kind: source.kind,
+                            origin: quad.origin,
+                            along: quad.along,
+                            across: right * quad.stretch,
+                            start_m: f64::from(along_m[segment]) + quad.start_m,
+                            half_m: ribbon.half_m,
+                            half_length_m: 0.0,
+                        };
+                        self.polygon(quad.polygon, &frame);
+                    });
+                }
+            }
+            Shape::Area { triangles, origin } => {
+                let frame = Frame {
+                    kind: source.kind,
+                    origin: *origin,
+                    along: DVec2::X,
+                    across: DVec2::Y,
+                    start_m: 0.0,
+                    half_m: 0.0,
+                    half_length_m: 0.0,
+                };
+                for triangle in &triangles[things] {
+                    self.polygon(*triangle, &frame);
+                }
+            }
+            Shape::Marks { marks, start_m, along } => {
+                for mark in &marks[things] {
+                    let place = |at: DVec2| self.lattice.spot(on_runway(*start_m, *along, at));
+                    let [Some(a), Some(b), Some(c), Some(d)] = mark.corners.map(place) else { continue };
+                    let (Some(origin), Some(polygon)) = (place(mark.centre), Polygon::new(&[a, b, c, d])) else {
+                        continue;
+                    };
+                    let frame = Frame {
+                        kind: source.kind,
+                        origin,
+                        along: *along,
+                        across: DVec2::new(-along.y, along.x),
+                        start_m: 0.0,
+                        half_m: mark.half_m,
+                        half_length_m: mark.half_length_m,
+                    };
+                    self.polygon(polygon, &frame);
+                }
+            }
+        }
+    }
+
+    fn polygon(&mut self, polygon: Polygon, frame: &Frame) {
+        let Self { field, lattice, square, overlay } = self;
+        polygon.cut(*square, |column, row, piece| {
+            let first = overlay.vertices.len();
+            if first > MOST_VERTICES {
+                return;
+            }
+            let middle = (column + row + 1) * UNITS;
+            let north_west = piece.corners().all(|spot| spot.u + spot.v <= middle);
+            if is_void(field, column, row, north_west) {
+                return;
+            }
+            for spot in piece.corners() {
+                overlay.vertices.push(vertex(field, lattice, square, frame, spot));
+            }
+            piece.fan(|a, b, c| overlay.indices.extend([a, b, c].map(|place| (first + place) as u32)));
+        });
+    }
+}
+
+/// Whether a triangle of the ground is not there.
+fn is_void(field: &Field, column: i64, row: i64, north_west: bool) -> bool {
+    let corner = if north_west { field.post_m(column, row) } else { field.post_m(column + 1, row + 1) };
+    (corner + field.post_m(column, row + 1) + field.post_m(column + 1, row)).is_nan()
+}
+
+fn vertex(field: &Field, lattice: &Lattice, square: &CellSquare, frame: &Frame, spot: Spot) -> Vertex {
+    let away_m = lattice.between_m(frame.origin, spot);
+    let packed = |value: f64, per_metre: f64, most: f64| (value * per_metre).round().clamp(-most, most);
+    let across = packed(away_m.dot(frame.across), ACROSS_PER_METRE, 32_767.0) as i16 as u16;
+    let half = packed(frame.half_m, ACROSS_PER_METRE, 32_767.0) as u16;
+    let extent = packed(frame.half_length_m, EXTENT_PER_METRE, 1_023.0) as u32;
+    let (east, south) = (spot.u - square.column * UNITS, spot.v - square.row * UNITS);
+    Vertex {
+        east: east as u32 | (frame.kind as u32) << PLACE_BITS,
+        south: south as u32 | extent << PLACE_BITS,
+        height_m: lattice::height_m(field, spot) as f32,
+        along_m: (frame.start_m + away_m.dot(frame.along)) as f32,
+        across: u32::from(across) | u32::from(half) << 16,
+    }
+}
