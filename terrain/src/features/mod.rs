@@ -1,6 +1,9 @@
 //! What lies on the ground.
 
 pub mod cover;
+pub mod index;
 pub mod lake_bake;
 pub mod lakes;
 pub mod model;
+pub mod shape;
+pub mod solid;
