@@ -1,7 +1,7 @@
 # Poligon on a fresh machine. `make help` says what there is.
 #
 #   ARGS="..."        more flags for the program, as in: make fly ARGS="--quality software"
-#   SUBJECT=frame     what `make bench` measures: ground, frame, bake, mesh, flight, all
+#   SUBJECT=frame     what `make bench` measures: ground, frame, scene, bake, mesh, flight, all
 #   SKIP_PACKAGES=1   install no system packages (they are there, or come from elsewhere)
 
 CARGO   ?= cargo
@@ -18,7 +18,7 @@ TEST_PACKAGES := xvfb xauth xdotool
 .DEFAULT_GOAL := help
 # The steps of one goal build on each other.
 .NOTPARALLEL:
-.PHONY: help fly test lint bench pictures release setup setup-test rust
+.PHONY: help fly test lint bench pictures gallery release setup setup-test rust
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -39,6 +39,9 @@ bench: release ## measure speed beside yardsticks
 
 pictures: release ## take the pictures of the README anew
 	$(POLIGON) fly --headless --lockstep --quality fine --size 960x540 --frames 60 --shots docs/pictures $(ARGS)
+
+gallery: release ## take the gallery of the embedded world into target/gallery
+	$(POLIGON) gallery --out target/gallery $(ARGS)
 
 release: setup
 	$(CARGO) build --release --locked

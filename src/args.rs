@@ -43,6 +43,8 @@ pub enum Verb {
     Trajectory(TrajectoryArgs),
     /// Take one picture.
     Shot(ShotArgs),
+    /// Take many pictures from a list, and a contact sheet of them.
+    Gallery(GalleryArgs),
     /// Measure speed beside a yardstick in the same run.
     Bench(BenchArgs),
     /// Measure accuracy against cost for every setting.
@@ -274,6 +276,23 @@ pub struct ShotArgs {
     #[arg(long)]
     pub wireframe: bool,
     /// How the picture is made.
+    #[command(flatten)]
+    pub view: ViewArgs,
+}
+
+/// `poligon gallery`
+#[derive(Debug, Args)]
+pub struct GalleryArgs {
+    /// The world [default: the embedded one].
+    #[arg(value_name = "W")]
+    pub world: Option<PathBuf>,
+    /// The list of pictures, TOML [default: the embedded world's]. assets/gallery has examples.
+    #[arg(long, value_name = "FILE.toml")]
+    pub list: Option<PathBuf>,
+    /// Folder for the pictures and contact-sheet.png.
+    #[arg(long, value_name = "DIR", default_value = "poligon-gallery")]
+    pub out: PathBuf,
+    /// How the pictures are made.
     #[command(flatten)]
     pub view: ViewArgs,
 }

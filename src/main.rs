@@ -17,10 +17,12 @@ mod progress;
 mod report;
 mod scenery;
 mod stage;
+mod still;
 mod thread_time;
 mod trade;
 mod values;
 mod verbs;
+mod views;
 
 use args::{CommandLine, Verb};
 use clap::Parser;
@@ -59,6 +61,7 @@ fn run(line: &CommandLine, started: Instant) -> Result<(), Failure> {
         Verb::Sight(args) => verbs::sight::run(args, output),
         Verb::Simulate(args) => verbs::simulate::run(args, output),
         Verb::Shot(args) => verbs::shot::run(args, output),
+        Verb::Gallery(args) => verbs::gallery::run(args, output),
         Verb::Bench(args) => verbs::bench::run(args, output),
         Verb::Trade(args) => verbs::trade::run(args, output),
         Verb::Trajectory(args) => verbs::trajectory::run(args, output),

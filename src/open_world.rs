@@ -54,7 +54,7 @@ pub fn landscape(world: &World, rings: &Rings) -> Arc<Landscape> {
         lakes: Arc::new(world.lakes.clone()),
         features: world.features.clone(),
         cover: world.cover.clone(),
-        climate: Climate::new(world.projection.centre().lat_rad, world.info.statistics.mean_m),
+        climate: Climate::of(world.projection.centre(), world.info.statistics.mean_m),
         masks,
     })
 }

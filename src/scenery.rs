@@ -218,6 +218,16 @@ impl Scenery {
         self.terrain.prepare(&self.gpu, 0, view);
     }
 
+    /// Bytes on the device for what the scene holds.
+    pub fn gpu_bytes(&self) -> usize {
+        self.terrain.gpu_bytes()
+    }
+
+    /// Whether all that the eye's place asks for is there.
+    pub fn is_settled(&self) -> bool {
+        !self.terrain.window().is_jumping() && self.terrain.window().late_blocks() == 0
+    }
+
     /// Draws what was last followed, with strokes over it.
     ///
     /// # Errors

@@ -118,6 +118,8 @@ pub enum Subject {
     Mesh,
     /// Steps of aircraft and shells.
     Flight,
+    /// What each thing on the ground costs.
+    Scene,
     /// All of them.
     All,
 }

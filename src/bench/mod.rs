@@ -9,6 +9,7 @@ pub mod flight;
 pub mod frame;
 pub mod ground;
 pub mod mesh;
+pub mod scene;
 pub mod statistics;
 
 /// Version of a yardstick that is part of this program.

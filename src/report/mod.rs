@@ -6,6 +6,7 @@
 
 mod bench;
 mod fly;
+mod gallery;
 mod height;
 mod shot;
 mod sight;
@@ -19,6 +20,7 @@ pub use bench::{Bench, BenchResult, Skipped, Yardstick};
 pub use fly::{
     Adapter, BuildCpuMs, Fly, FrameMs, MemoryBytes, Sim, Terrain, Track, UpdateCpuMs, UploadBytes, World, quantile,
 };
+pub use gallery::Gallery;
 pub use height::{HeightPoint, Heights};
 pub use shot::Shot;
 pub use sight::{Hit, Sight};
@@ -26,7 +28,7 @@ pub use simulate::{Simulated, Stiffness, TrimFound};
 pub use trade::{Knob, KnobPoint, Trade};
 pub use trajectory::TrajectoryReport;
 pub use verify::{EdgesChecked, Far, Gpu, Near, Verify};
-pub use world::{Extent, FeatureCount, Lake, Source, Voids, WorldReport};
+pub use world::{Cover, Extent, FeatureCount, Lake, Source, Voids, WorldReport};
 
 /// A 64-bit hash as it is reported.
 pub fn hash(value: u64) -> String {
@@ -98,7 +100,8 @@ mod tests {
         );
         let features = BTreeMap::from([("highways".to_owned(), FeatureCount::default())]);
         let (sources, lakes) = (vec![Source::default()], vec![Lake::default()]);
-        let world = WorldReport { sources, features, lakes, ..WorldReport::default() };
+        let cover = Some(Cover { shares: one("Grass"), ..Cover::default() });
+        let world = WorldReport { sources, features, lakes, cover, ..WorldReport::default() };
         assert_eq!(
             names(&world),
             "name blocks posts step_m extent.centre_lat_deg extent.centre_lon_deg extent.west_m extent.east_m \
@@ -106,7 +109,7 @@ mod tests {
              voids.beyond_posts sources[].name sources[].format sources[].credit sources[].step_m sources[].system \
              sources[].height_scale sources[].void_samples sources[].note wall_s peak_rss_mib \
              features.highways.read features.highways.kept features.highways.skipped lakes[].name lakes[].level_m \
-             lakes[].level_from lakes[].posts"
+             lakes[].level_from lakes[].posts cover.cell_m cover.shares.Grass cover.from_features"
         );
         let heights = Heights { points: vec![HeightPoint::default()] };
         assert_eq!(
@@ -127,6 +130,12 @@ mod tests {
         assert_eq!(
             names(&Shot::default()),
             "out size image_hash visibility_m triangles_drawn triangles_all_level0 late_blocks"
+        );
+        let gallery = Gallery { pictures: vec![Shot::default()], ..Gallery::default() };
+        assert_eq!(
+            names(&gallery),
+            "pictures[].out pictures[].size pictures[].image_hash pictures[].visibility_m pictures[].triangles_drawn \
+             pictures[].triangles_all_level0 pictures[].late_blocks contact_sheet"
         );
         assert_eq!(names(&Sight::default()), "visible hit clearance_min_m clearance_min_at_m distance_m ground_share");
         let result = BenchResult { yardstick: Some(Yardstick::default()), ..BenchResult::default() };

@@ -28,6 +28,8 @@ pub struct WorldReport {
     pub features: BTreeMap<String, FeatureCount>,
     /// Lakes set to one level.
     pub lakes: Vec<Lake>,
+    /// What covers the ground; null where nothing is known.
+    pub cover: Option<Cover>,
 }
 
 /// Where a world lies: its centre on the Earth, its edges in its own plane.
@@ -94,6 +96,17 @@ pub struct FeatureCount {
     pub kept: u64,
     /// Left out.
     pub skipped: u64,
+}
+
+/// What covers the ground.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Cover {
+    /// Side of a cell.
+    pub cell_m: f64,
+    /// Share of the known cells by class.
+    pub shares: BTreeMap<String, f64>,
+    /// Share of the known cells that files of features decided; rules decided the others.
+    pub from_features: f64,
 }
 
 /// A lake of a world.

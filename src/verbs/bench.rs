@@ -1,12 +1,13 @@
 //! `poligon bench`: speed beside a yardstick in the same run.
 
 use crate::args::BenchArgs;
-use crate::bench::{bake, flight, frame, ground, mesh};
+use crate::bench::{bake, flight, frame, ground, mesh, scene};
 use crate::failure::Failure;
 use crate::open_world;
 use crate::output::{self, Output};
 use crate::report;
 use crate::values::Subject;
+use crate::views::Views;
 use std::sync::Arc;
 use terrain::Ground;
 
@@ -41,6 +42,15 @@ pub fn run(args: &BenchArgs, output: Output) -> Result<(), Failure> {
             Ok(_) => report.results.extend(frame::bench(&world, frame::Load::FULL)?),
             Err(reason) => {
                 report.skipped.push(report::Skipped { name: "frame".into(), reason: reason.to_string() });
+            }
+        }
+    }
+    if wanted(Subject::Scene) {
+        tell_subject("what stands on the ground");
+        match visual::Gpu::headless() {
+            Ok(_) => report.results.extend(scene::bench(&world, &Views::read(None)?, scene::Load::FULL)?),
+            Err(reason) => {
+                report.skipped.push(report::Skipped { name: "scene".into(), reason: reason.to_string() });
             }
         }
     }

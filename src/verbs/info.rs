@@ -67,6 +67,11 @@ pub fn describe(info: &WorldInfo) -> WorldReport {
                 (kind.clone(), report::FeatureCount { read, kept, skipped })
             })
             .collect(),
+        cover: info.cover.as_ref().map(|cover| report::Cover {
+            cell_m: cover.cell_m,
+            shares: cover.shares.clone(),
+            from_features: cover.from_features,
+        }),
         lakes: info
             .lakes
             .iter()

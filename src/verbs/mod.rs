@@ -5,6 +5,7 @@
 pub mod bake;
 pub mod bench;
 pub mod fly;
+pub mod gallery;
 pub mod height;
 pub mod info;
 pub mod shot;

@@ -4,8 +4,8 @@ use crate::args::ShotArgs;
 use crate::failure::Failure;
 use crate::open_world;
 use crate::output::Output;
-use crate::report;
 use crate::scenery::{self, Look, Scenery};
+use crate::still::{self, Standpoint};
 use std::sync::Arc;
 use visual::capture::{self, Offscreen};
 
@@ -23,26 +23,13 @@ pub fn run(args: &ShotArgs, output: Output) -> Result<(), Failure> {
     look.ground.wireframe = args.wireframe;
     let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), look);
     let eye_m = scenery::position(&world, &scenery.area, args.eye)?;
-    let heading_rad = scenery::grid_heading_rad(&world, eye_m, args.look.azimuth_deg.to_radians());
-    let attitude = terrain::frame::attitude(heading_rad, args.look.elevation_deg.to_radians(), 0.0);
-    let to_sun = scenery.to_sun(args.view.time.unwrap_or_else(|| scenery::default_moment(&world)))?;
-
-    let failed = |error: visual::GpuError| Failure::while_doing("taking a picture", error);
-    let target = Offscreen::new(&scenery.gpu, look.size_px).map_err(failed)?;
-    let view = scenery.view(eye_m, attitude, look.size_px);
-    scenery.follow(&view, 0.0, to_sun);
-    scenery.draw(&view, to_sun, 0.0, Vec::new(), &target.view).map_err(failed)?;
-    let picture = target.read(&scenery.gpu).map_err(failed)?;
-    picture.write_png(&args.out).map_err(|error| Failure::Failed(error.to_string()))?;
-
-    let counts = scenery.terrain.counts();
-    output.print(&report::Shot {
-        out: args.out.display().to_string(),
-        size: format!("{}x{}", look.size_px[0], look.size_px[1]),
-        image_hash: report::hash(picture.hash()),
-        visibility_m: scenery.visibility_m(),
-        triangles_drawn: counts.triangles,
-        triangles_all_level0: counts.triangles_all_level0,
-        late_blocks: scenery.terrain.window().late_blocks(),
-    })
+    let at = Standpoint {
+        eye_m,
+        attitude: still::attitude(&world, eye_m, args.look.azimuth_deg, args.look.elevation_deg),
+        to_sun: scenery.to_sun(args.view.time.unwrap_or_else(|| scenery::default_moment(&world)))?,
+    };
+    let target =
+        Offscreen::new(&scenery.gpu, look.size_px).map_err(|error| Failure::while_doing("taking a picture", error))?;
+    let picture = still::take(&mut scenery, &at, &target)?;
+    output.print(&still::write(&scenery, &picture, &args.out)?)
 }

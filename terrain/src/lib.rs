@@ -16,6 +16,7 @@ pub mod frame;
 mod grid;
 mod ground;
 pub mod near;
+mod noise;
 mod projection;
 mod pyramid;
 pub mod store;

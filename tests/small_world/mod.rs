@@ -43,6 +43,7 @@ pub fn write(test: &str) -> PathBuf {
             statistics,
             voids: Voids { posts: 0, share: 0.0, largest_posts: 0, beyond_posts: 0 },
             sources: Vec::new(),
+            cover: None,
             lakes: Vec::new(),
             features: std::collections::BTreeMap::new(),
             files: Vec::new(),

@@ -6,7 +6,8 @@ use super::mosaic::{mosaic, pixel_m};
 use super::open;
 use super::raster::{Raster, Unreadable};
 use super::void_fill;
-use crate::features::cover::Cover;
+use crate::features::cover_bake::{self, bake_cover};
+use crate::features::cover_rules::Climate;
 use crate::features::lake_bake::{self, LakesError, TAPER_POSTS};
 use crate::features::lakes::Lakes;
 use crate::features::model::Features;
@@ -148,7 +149,7 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
     let (lakes, lake_infos, lakes_read) = set_lakes(request, &projection, &grid, &mut sampled.heights_m)?;
     progress("lakes", 1.0);
 
-    let info = WorldInfo {
+    let mut info = WorldInfo {
         format_version: FORMAT_VERSION,
         name: request.name.clone(),
         projection: "transverse Mercator on WGS84 about the centre, scale 1; x east, z south, metres".into(),
@@ -166,13 +167,19 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
             "lakes".to_owned(),
             FeatureCount { read: lakes_read, kept: lake_infos.len(), skipped: lakes_read - lake_infos.len() },
         )]),
+        cover: None,
         lakes: lake_infos,
         files: Vec::new(),
     };
     // Samples are within the field's bounds and means do not leave them; a lake's level was checked when read.
     let field = Field::new(grid, sampled.heights_m).map_err(|_| BakeError::AllVoid)?;
     let name = request.name.clone();
-    let (features, cover) = (Arc::new(Features::default()), Arc::new(Cover::unknown(&grid)));
+    let features = Arc::new(Features::default());
+    progress("cover", 0.0);
+    let climate = Climate::of(projection.centre(), info.statistics.mean_m);
+    let cover = Arc::new(bake_cover(&field, &lakes, &features, &climate));
+    info.cover = cover_bake::described(&cover);
+    progress("cover", 1.0);
     let mut world = World { name, projection, field: Arc::new(field), lakes, features, cover, masks: Vec::new(), info };
     progress("masks", 0.0);
     world.make_ring_masks();

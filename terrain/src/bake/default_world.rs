@@ -18,7 +18,7 @@ const LAKES: Bytes =
     Bytes { name: "lakes.geojson", content: include_bytes!("../../../assets/worlds/issyk_kul/lakes.geojson") };
 
 /// To be raised when the bake makes other posts, or another description, from the same input.
-const BAKE_VERSION: u32 = 3;
+const BAKE_VERSION: u32 = 4;
 
 /// The default world and where it is kept.
 pub struct DefaultWorld {

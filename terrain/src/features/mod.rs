@@ -1,6 +1,8 @@
 //! What lies on the ground.
 
 pub mod cover;
+pub mod cover_bake;
+pub mod cover_rules;
 pub mod index;
 pub mod lake_bake;
 pub mod lakes;

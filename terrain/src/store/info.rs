@@ -42,6 +42,9 @@ pub struct WorldInfo {
     /// What was made of the files of features, by kind.
     #[serde(default)]
     pub features: BTreeMap<String, FeatureCount>,
+    /// What covers the ground.
+    #[serde(default)]
+    pub cover: Option<CoverInfo>,
     /// Lakes set to one level.
     #[serde(default)]
     pub lakes: Vec<LakeInfo>,
@@ -123,6 +126,17 @@ pub struct FeatureCount {
     pub kept: usize,
     /// Left out: elsewhere, or not of a shape that this kind has.
     pub skipped: usize,
+}
+
+/// What covers the ground.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CoverInfo {
+    /// Side of a cell.
+    pub cell_m: f64,
+    /// Share of the known cells that files of features decided; rules decided the others.
+    pub from_features: f64,
+    /// Share of the known cells by class.
+    pub shares: BTreeMap<String, f64>,
 }
 
 /// A lake.

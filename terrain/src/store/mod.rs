@@ -18,7 +18,9 @@ mod info;
 mod masks;
 
 pub use folder::StoreError;
-pub use info::{Extent, FORMAT_VERSION, FeatureCount, FileInfo, LakeInfo, Source, Statistics, Voids, WorldInfo};
+pub use info::{
+    CoverInfo, Extent, FORMAT_VERSION, FeatureCount, FileInfo, LakeInfo, Source, Statistics, Voids, WorldInfo,
+};
 
 use crate::block::rings::{RingMasks, Rings};
 use crate::features::cover::Cover;
