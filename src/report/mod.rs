@@ -98,7 +98,9 @@ mod tests {
              near.max_difference_m near.places gpu.vertices_checked gpu.height_mismatches gpu.position_mismatches \
              gpu.pixels_checked gpu.pixels_outside gpu.pixels_excluded"
         );
-        let features = BTreeMap::from([("highways".to_owned(), FeatureCount::default())]);
+        let one_of = |what: &str| BTreeMap::from([(what.to_owned(), 1)]);
+        let count = FeatureCount { skipped_for: one_of("outside"), notes: one_of("turned"), ..FeatureCount::default() };
+        let features = BTreeMap::from([("highways".to_owned(), count)]);
         let (sources, lakes) = (vec![Source::default()], vec![Lake::default()]);
         let cover = Some(Cover { shares: one("Grass"), ..Cover::default() });
         let world = WorldReport { sources, features, lakes, cover, ..WorldReport::default() };
@@ -108,8 +110,9 @@ mod tests {
              extent.north_m extent.south_m extent.lowest_m extent.highest_m voids.posts voids.share voids.largest_posts \
              voids.beyond_posts sources[].name sources[].format sources[].credit sources[].step_m sources[].system \
              sources[].height_scale sources[].void_samples sources[].note wall_s peak_rss_mib \
-             features.highways.read features.highways.kept features.highways.skipped lakes[].name lakes[].level_m \
-             lakes[].level_from lakes[].posts cover.cell_m cover.shares.Grass cover.from_features"
+             features.highways.read features.highways.kept features.highways.skipped features.highways.skipped_for.outside \
+             features.highways.notes.turned lakes[].name lakes[].level_m lakes[].level_from lakes[].posts cover.cell_m \
+             cover.shares.Grass cover.from_features"
         );
         let heights = Heights { points: vec![HeightPoint::default()] };
         assert_eq!(

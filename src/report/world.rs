@@ -96,6 +96,10 @@ pub struct FeatureCount {
     pub kept: u64,
     /// Left out.
     pub skipped: u64,
+    /// The same by reason.
+    pub skipped_for: BTreeMap<String, u64>,
+    /// What was done with how many of those kept, where that is worth knowing.
+    pub notes: BTreeMap<String, u64>,
 }
 
 /// What covers the ground.

@@ -6,12 +6,13 @@ use crate::output::{self, Output};
 use crate::progress::Progress;
 use crate::report;
 use crate::verbs::info;
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::Path;
 use std::time::Instant;
 use terrain::Geodetic;
 use terrain::bake::{BakeRequest, Input};
-use terrain::store::World;
+use terrain::store::{FeatureCount, World};
 
 /// Runs the verb.
 ///
@@ -45,14 +46,27 @@ pub fn run(args: &BakeArgs, output: Output) -> Result<(), Failure> {
     for source in world.info.sources.iter().filter(|source| !source.note.is_empty()) {
         output::tell(format_args!("poligon: {}: {}", source.file, source.note));
     }
-    for (kind, count) in world.info.features.iter().filter(|(_, count)| count.skipped > 0) {
-        output::tell(format_args!(
-            "poligon: {} of {} {kind} left out: elsewhere, or no polygons",
-            count.skipped, count.read
-        ));
+    for (kind, count) in world.info.features.iter().filter(|(_, count)| count.read > 0) {
+        output::tell(format_args!("poligon: {}", told(kind, count)));
     }
     let described = info::describe(&world.info);
     output.print(&report::WorldReport { wall_s: Some(started.elapsed().as_secs_f64()), ..described })
+}
+
+/// What became of the features of a kind, in a line.
+fn told(kind: &str, count: &FeatureCount) -> String {
+    let list = |numbers: &BTreeMap<String, usize>| {
+        let all: Vec<String> = numbers.iter().map(|(what, number)| format!("{number} {what}")).collect();
+        all.join(", ")
+    };
+    let mut line = format!("{kind}: {} of {} kept", count.kept, count.read);
+    if count.skipped > 0 {
+        line += &format!("; left out: {}", list(&count.skipped_for));
+    }
+    if !count.notes.is_empty() {
+        line += &format!("; {}", list(&count.notes));
+    }
+    line
 }
 
 /// A source, with the height scale that may follow its name. A path that is not UTF-8 has none.

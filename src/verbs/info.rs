@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::open_world;
 use crate::output::Output;
 use crate::report::{self, WorldReport};
+use std::collections::BTreeMap;
 use terrain::store::WorldInfo;
 
 /// Runs the verb.
@@ -64,7 +65,11 @@ pub fn describe(info: &WorldInfo) -> WorldReport {
             .iter()
             .map(|(kind, count)| {
                 let [read, kept, skipped] = [count.read, count.kept, count.skipped].map(|n| n as u64);
-                (kind.clone(), report::FeatureCount { read, kept, skipped })
+                let by = |numbers: &BTreeMap<String, usize>| {
+                    numbers.iter().map(|(what, number)| (what.clone(), *number as u64)).collect()
+                };
+                let (skipped_for, notes) = (by(&count.skipped_for), by(&count.notes));
+                (kind.clone(), report::FeatureCount { read, kept, skipped, skipped_for, notes })
             })
             .collect(),
         cover: info.cover.as_ref().map(|cover| report::Cover {

@@ -2,29 +2,22 @@
 
 use super::error::BakeError;
 use super::extent::{extent, middle, written_deg};
+use super::features::{self, RawFeature};
 use super::mosaic::{mosaic, pixel_m};
 use super::open;
 use super::raster::{Raster, Unreadable};
 use super::void_fill;
 use crate::features::cover_bake::{self, bake_cover};
 use crate::features::cover_rules::Climate;
-use crate::features::lake_bake::{self, LakesError, TAPER_POSTS};
-use crate::features::lakes::Lakes;
-use crate::features::model::Features;
 use crate::field::Field;
-use crate::grid::Grid;
+use crate::ground::Ground;
 use crate::projection::{Geodetic, Projection};
-use crate::store::{Extent, FORMAT_VERSION, FeatureCount, LakeInfo, Source, Statistics, Voids, World, WorldInfo};
-use std::collections::BTreeMap;
-use std::io::Read;
+use crate::store::{Extent, FORMAT_VERSION, Source, Statistics, Voids, World, WorldInfo};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// What the kernel is called in a world's description.
 const KERNEL: &str = "area-weighted where posts are coarser than samples, else bilinear; samples at pixel centres";
-
-/// Largest file of features read.
-const MAX_FEATURES_BYTES: u64 = 1 << 28;
 
 /// Bytes that are there without a file.
 #[derive(Debug, Clone, Copy)]
@@ -51,7 +44,7 @@ pub struct BakeRequest {
     pub name: String,
     /// Files of heights, each with the factor that turns its numbers into metres (1 for metres).
     pub sources: Vec<(Input, f64)>,
-    /// GeoJSON files of lakes.
+    /// Files of features: OSM PBF and XML, GeoJSON, shapefiles.
     pub features: Vec<Input>,
     /// Distance between posts, metres, 25..=400.
     pub step_m: f64,
@@ -95,22 +88,6 @@ impl Input {
             Self::Embedded(bytes) => open::read(bytes.content, bytes.name, None),
         }
     }
-
-    fn text(&self) -> Result<String, LakesError> {
-        match self {
-            Self::File(path) => bounded_text(path),
-            Self::Embedded(bytes) => String::from_utf8(bytes.content.to_vec()).map_err(|e| e.to_string()),
-        }
-        .map_err(|found| LakesError { expected: "a text file".into(), found })
-    }
-}
-
-/// A text file of at most [`MAX_FEATURES_BYTES`].
-fn bounded_text(path: &Path) -> Result<String, String> {
-    let mut text = String::new();
-    let file = std::fs::File::open(path).map_err(|e| e.to_string())?;
-    file.take(MAX_FEATURES_BYTES + 1).read_to_string(&mut text).map_err(|e| e.to_string())?;
-    if text.len() as u64 > MAX_FEATURES_BYTES { Err("more than 256 MiB".into()) } else { Ok(text) }
 }
 
 /// Bakes a world. `progress` is told the stage and how much of it is done, 0..=1.
@@ -145,9 +122,20 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
         beyond_posts: grid.posts() - inside,
     };
     progress("filling voids", 1.0);
+    progress("features", 0.0);
+    let mut placed = features::place(&read_features(request)?, &projection, &grid);
     progress("lakes", 0.0);
-    let (lakes, lake_infos, lakes_read) = set_lakes(request, &projection, &grid, &mut sampled.heights_m)?;
+    let (lakes, lake_infos, mut ponds) =
+        features::set_lakes(placed.waters, &grid, &mut sampled.heights_m, &mut placed.counts);
+    placed.features.areas.append(&mut ponds);
     progress("lakes", 1.0);
+    let statistics = statistics(&sampled.heights_m);
+    // Samples are within the field's bounds and means do not leave them; a lake's level was checked when read.
+    let field = Arc::new(Field::new(grid, sampled.heights_m).map_err(|_| BakeError::AllVoid)?);
+    if !placed.features.waterways.is_empty() {
+        let ground = Ground::new(field.clone()).whole();
+        features::turn_downstream(&mut placed.features.waterways, &ground, &mut placed.counts);
+    }
 
     let mut info = WorldInfo {
         format_version: FORMAT_VERSION,
@@ -160,27 +148,22 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
         blocks_z: grid.blocks_z,
         kernel: KERNEL.into(),
         extent: Extent { west_m: grid.west_m, north_m: grid.north_m, east_m: grid.east_m(), south_m: grid.south_m() },
-        statistics: statistics(&sampled.heights_m),
+        statistics,
         voids,
         sources: described(request, &projection, &rasters),
-        features: BTreeMap::from([(
-            "lakes".to_owned(),
-            FeatureCount { read: lakes_read, kept: lake_infos.len(), skipped: lakes_read - lake_infos.len() },
-        )]),
+        features: placed.counts.described(),
         cover: None,
         lakes: lake_infos,
         files: Vec::new(),
     };
-    // Samples are within the field's bounds and means do not leave them; a lake's level was checked when read.
-    let field = Field::new(grid, sampled.heights_m).map_err(|_| BakeError::AllVoid)?;
     let name = request.name.clone();
-    let features = Arc::new(Features::default());
+    let features = Arc::new(placed.features);
     progress("cover", 0.0);
     let climate = Climate::of(projection.centre(), info.statistics.mean_m);
     let cover = Arc::new(bake_cover(&field, &lakes, &features, &climate));
     info.cover = cover_bake::described(&cover);
     progress("cover", 1.0);
-    let mut world = World { name, projection, field: Arc::new(field), lakes, features, cover, masks: Vec::new(), info };
+    let mut world = World { name, projection, field, lakes, features, cover, masks: Vec::new(), info };
     progress("masks", 0.0);
     world.make_ring_masks();
     Ok(world)
@@ -200,38 +183,14 @@ fn scaled(input: &Input, height_scale: f64) -> Result<Raster, BakeError> {
     Ok(raster)
 }
 
-fn set_lakes(
-    request: &BakeRequest,
-    projection: &Projection,
-    grid: &Grid,
-    heights_m: &mut [f32],
-) -> Result<(Lakes, Vec<LakeInfo>, usize), BakeError> {
+/// All features of all files.
+fn read_features(request: &BakeRequest) -> Result<Vec<RawFeature>, BakeError> {
     let mut all = Vec::new();
-    let mut level_from = Vec::new();
-    let mut read = 0;
     for input in &request.features {
-        let failed = |problem| BakeError::Features { file: input.shown(), problem };
-        let found = lake_bake::read_geojson(&input.text().map_err(failed)?, projection, grid).map_err(failed)?;
-        read += found.features;
-        for outline in found.outlines {
-            let from = if outline.level_m.is_some() { "file" } else { "median of the raster inside" };
-            if let Some(lake) = lake_bake::with_level(outline, grid, heights_m) {
-                all.push(lake);
-                level_from.push(from);
-            }
-        }
+        let read = features::open(input);
+        all.append(&mut read.map_err(|problem| BakeError::Features { file: input.shown(), problem })?);
     }
-    let lakes = Lakes::new(all);
-    let posts = lake_bake::burn(&lakes, grid, heights_m);
-    let infos = lakes.lakes().iter().zip(level_from).zip(posts).map(|((lake, from), posts)| LakeInfo {
-        name: lake.name.clone(),
-        level_m: lake.level_m,
-        level_from: from.into(),
-        posts,
-        taper_m: TAPER_POSTS * grid.step_m,
-    });
-    let infos: Vec<LakeInfo> = infos.collect();
-    Ok((lakes, infos, read))
+    Ok(all)
 }
 
 fn statistics(heights_m: &[f32]) -> Statistics {

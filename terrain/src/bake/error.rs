@@ -2,7 +2,6 @@
 
 use super::extent::{MAX_POSTS, MAX_SIDE_KM, MAX_STEP_M, MIN_STEP_M};
 use super::raster::Unreadable;
-use crate::features::lake_bake::LakesError;
 use crate::projection::ProjectionError;
 use std::fmt;
 
@@ -23,7 +22,7 @@ pub enum BakeError {
         /// Its name.
         file: String,
         /// What is wrong with it.
-        problem: LakesError,
+        problem: Unreadable,
     },
     /// The height scale of a source is not a factor.
     HeightScale {

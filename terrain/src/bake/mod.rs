@@ -2,7 +2,7 @@
 //!
 //! [`open`](open::open) reads a file of any known format into a [`Raster`](raster::Raster); [`bake`] lays all of them
 //! over the posts of a new world ([`mosaic`], kernel in [`resample`]), fills what is missing inside the data
-//! ([`void_fill`]), sets lakes to their level and describes the result. Heights are metres above mean sea level, as the
+//! ([`void_fill`]), lays the features of files on it ([`features`]), sets lakes to their level and describes the result. Heights are metres above mean sea level, as the
 //! sources have them, and clamped nowhere. Formats are read from hostile bytes: sizes are bounded before they are
 //! believed, and every failure is an error that names the file, what was expected and what was found.
 
@@ -11,6 +11,7 @@ pub mod crs;
 mod default_world;
 mod error;
 mod extent;
+pub mod features;
 pub mod geotiff;
 pub mod hgt;
 pub mod mosaic;

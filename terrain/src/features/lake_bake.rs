@@ -7,23 +7,14 @@
 
 use super::lakes::{Lake, Lakes, LakesNear, bounds_m, crossing_x, edges};
 use crate::grid::Grid;
-use crate::projection::{Geodetic, Projection};
-use geojson::{GeoJson, GeometryValue};
 use glam::DVec2;
 use rayon::prelude::*;
-use std::fmt;
 
 /// Width of the blended shore outside an outline, posts.
 pub const TAPER_POSTS: f64 = 2.0;
 
-/// Outlines and levels are whole millimetres: so few digits that text keeps them to the bit.
+/// Levels are whole millimetres: so few digits that text keeps them to the bit.
 const PER_METRE: f64 = 1000.0;
-
-/// A ring with a point so far from the world's centre is left out: the map is not made for it. No lake is so long.
-const FAR_RAD: f64 = 0.5;
-
-/// Most points of all outlines of a file: a lake district at a metre.
-const MAX_POINTS: usize = 4_000_000;
 
 /// An outline read from a file, before its level is known.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,100 +25,6 @@ pub struct Outline {
     pub level_m: Option<f64>,
     /// World x and z in metres.
     pub rings: Vec<Vec<DVec2>>,
-}
-
-/// What a file has.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OutlinesRead {
-    /// Outlines that come near the grid.
-    pub outlines: Vec<Outline>,
-    /// Features in the file, those left out too.
-    pub features: usize,
-}
-
-/// Why a file has no lakes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LakesError {
-    /// What should have been there.
-    pub expected: String,
-    /// What was there.
-    pub found: String,
-}
-
-impl fmt::Display for LakesError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "expected {}, found {}", self.expected, self.found)
-    }
-}
-
-impl std::error::Error for LakesError {}
-
-/// Reads lakes from GeoJSON: (multi)polygons with the optional properties `name` and `level_m`.
-///
-/// Features that are no polygons and outlines that come nowhere near the grid are left out.
-///
-/// # Errors
-/// [`LakesError`] if it is not GeoJSON, a point is no place on Earth, or a level no height.
-pub fn read_geojson(text: &str, projection: &Projection, grid: &Grid) -> Result<OutlinesRead, LakesError> {
-    let wrong = |expected: &str, found: String| LakesError { expected: expected.into(), found };
-    let features = match text.parse::<GeoJson>() {
-        Ok(GeoJson::FeatureCollection(collection)) => collection.features,
-        Ok(GeoJson::Feature(feature)) => vec![feature],
-        Ok(GeoJson::Geometry(_)) => return Err(wrong("features", "a bare geometry".into())),
-        Err(error) => return Err(wrong("GeoJSON", error.to_string())),
-    };
-    let mut points = 0;
-    let count = features.len();
-    let mut outlines = Vec::new();
-    for feature in features {
-        let property = |key| feature.properties.as_ref().and_then(|p| p.get(key));
-        let name = property("name").and_then(|v| v.as_str()).unwrap_or_default().to_owned();
-        let level_m = match property("level_m") {
-            None => None,
-            Some(value) => match value.as_f64().filter(|level| level.abs() <= f64::from(crate::field::MAX_HEIGHT_M)) {
-                Some(level) => Some(level),
-                None if value.is_null() => None,
-                None => return Err(wrong("a height in level_m", value.to_string())),
-            },
-        };
-        let polygons = match feature.geometry.map(|g| g.value) {
-            Some(GeometryValue::Polygon { coordinates }) => vec![coordinates],
-            Some(GeometryValue::MultiPolygon { coordinates }) => coordinates,
-            _ => continue,
-        };
-        let mut rings = Vec::new();
-        for ring in polygons.iter().flatten() {
-            points += ring.len();
-            if points > MAX_POINTS {
-                return Err(wrong(&format!("at most {MAX_POINTS} points"), "more".into()));
-            }
-            let mut places = Vec::with_capacity(ring.len());
-            let mut near = true;
-            for point in ring {
-                let (lon, lat) = match point.as_slice() {
-                    [lon, lat, ..] if lat.abs() <= 90.0 && lon.abs() <= 360.0 => (*lon, *lat),
-                    other => return Err(wrong("longitude and latitude in degrees", format!("{other:?}"))),
-                };
-                let place = Geodetic::from_degrees(lat, lon);
-                near &= angle_rad(place, projection.centre()) < FAR_RAD;
-                places.push((projection.to_world(place) * PER_METRE).round() / PER_METRE);
-            }
-            if places.first() == places.last() {
-                places.pop();
-            }
-            if near && places.len() >= 3 && places.iter().all(|p| p.is_finite()) {
-                rings.push(places);
-            }
-        }
-        let outline = Outline { name, level_m, rings };
-        let (low, high) = bounds_m(&outline.rings);
-        let reach = TAPER_POSTS * grid.step_m;
-        let near = low.x <= grid.east_m() + reach && high.x >= grid.west_m - reach;
-        if near && low.y <= grid.south_m() + reach && high.y >= grid.north_m - reach {
-            outlines.push(outline);
-        }
-    }
-    Ok(OutlinesRead { outlines, features: count })
 }
 
 /// The lake of an outline: its own level, or the median of the posts inside, or `None` if there are none.
@@ -202,13 +99,6 @@ fn rows_inside<'a>(
     })
 }
 
-/// Angle between two places seen from the centre of a sphere.
-fn angle_rad(a: Geodetic, b: Geodetic) -> f64 {
-    let half = |d: f64| (0.5 * d).sin().powi(2);
-    let across = a.lat_rad.cos() * b.lat_rad.cos() * half(a.lon_rad - b.lon_rad);
-    2.0 * (half(a.lat_rad - b.lat_rad) + across).min(1.0).sqrt().asin()
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::lakes::{inside, tests::lakes};
@@ -234,29 +124,5 @@ mod tests {
                 all.filter(|&(c, r)| inside(edges(&lake.rings), DVec2::new(grid.x_m(c as i64), grid.z_m(r as i64))));
             assert_eq!(slow.count(), posts[number]);
         }
-    }
-
-    #[test]
-    fn geojson_gives_outlines_and_says_what_is_wrong() {
-        let grid = Grid::centred(200.0, 4, 4).unwrap();
-        let projection = Projection::new(Geodetic::from_degrees(42.0, 78.0)).unwrap();
-        let polygon = |properties: &str, lon: &str| {
-            format!(
-                r#"{{"type":"Feature","properties":{properties},"geometry":{{"type":"Polygon","coordinates":
-                [[[{lon},42.0],[78.05,42.0],[78.05,42.05],[{lon},42.0]]]}}}}"#
-            )
-        };
-        let read = |text: &str| read_geojson(text, &projection, &grid).map(|read| read.outlines);
-        let outlines = read(&polygon(r#"{"name":"A"}"#, "78.0")).unwrap();
-        assert_eq!((outlines.len(), outlines[0].rings[0].len(), outlines[0].level_m), (1, 3, None));
-        let heights: Vec<f32> = vec![7.0; grid.posts()];
-        assert_eq!(with_level(outlines[0].clone(), &grid, &heights).unwrap().level_m, 7.0);
-        assert_eq!(read(&polygon(r#"{"level_m":12.5}"#, "78.0")).unwrap()[0].level_m, Some(12.5));
-        for bad in ["", "{}", "[1]", &polygon(r#"{"level_m":"x"}"#, "78.0"), &polygon("{}", "1e9")] {
-            assert!(read(bad).is_err(), "{bad}");
-        }
-        // On the other side of the Earth, and next door.
-        assert!(read(&polygon("{}", "-102.0")).unwrap().is_empty());
-        assert!(read(&polygon("{}", "77.9").replace("42.0", "52.0")).unwrap().is_empty());
     }
 }

@@ -118,14 +118,20 @@ pub struct Source {
 }
 
 /// Features of one kind.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FeatureCount {
     /// In the files.
     pub read: usize,
     /// In the world.
     pub kept: usize,
-    /// Left out: elsewhere, or not of a shape that this kind has.
+    /// Left out: `read` is the sum of both.
     pub skipped: usize,
+    /// The same by reason.
+    #[serde(default)]
+    pub skipped_for: BTreeMap<String, usize>,
+    /// What was done with how many of those kept, where that is worth knowing.
+    #[serde(default)]
+    pub notes: BTreeMap<String, usize>,
 }
 
 /// What covers the ground.

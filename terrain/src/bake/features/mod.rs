@@ -1,0 +1,127 @@
+//! Features from files: read, understood, laid on a world, counted.
+//!
+//! Each format has its file and gives [`raw::RawFeature`]s; what a file is is told from its content. [`tags`] says what
+//! they mean, [`place`] lays them on a world's plane and keeps the books ([`kind::Counts`]): of every kind
+//! `read = kept + skipped`, with the reason for each. [`waters`] makes lakes of the water that is large enough for the
+//! posts, [`downhill`] turns rivers the way the ground falls. Frame of what comes out: [`crate::frame`].
+
+mod downhill;
+mod geojson;
+mod kind;
+mod measure;
+mod osm;
+mod osm_pbf;
+mod osm_xml;
+mod place;
+mod raw;
+mod relations;
+mod shapefile;
+mod tags;
+mod waters;
+
+use super::bake_world::Input;
+use super::raster::Unreadable;
+use flate2::read::MultiGzDecoder;
+use raw::Tags;
+use std::io::Read;
+use std::path::Path;
+
+pub use downhill::turn_downstream;
+pub use kind::{Counts, Kind};
+pub use place::{Placed, place};
+pub use raw::RawFeature;
+pub use waters::{OpenWater, set_lakes};
+
+/// Largest file, also unpacked.
+pub const MAX_BYTES: u64 = 1 << 30;
+
+/// Most points of a GeoJSON file or a shapefile: the lakes of a continent.
+const MAX_POINTS: usize = 4_000_000;
+
+/// Reads a file of features in any of the known formats.
+///
+/// # Errors
+/// [`Unreadable`] says what was expected and found.
+pub fn open(input: &Input) -> Result<Vec<RawFeature>, Unreadable> {
+    match input {
+        Input::Embedded(bytes) => read(bytes.content, None, None),
+        Input::File(path) => {
+            let bytes = bounded_file(path)?;
+            let beside = |extension: &str| bounded_file(&path.with_extension(extension)).ok();
+            if shapefile::looks_like(&bytes) {
+                let prj = beside("prj").map(|prj| String::from_utf8_lossy(&prj).into_owned());
+                return read(&bytes, beside("dbf").as_deref(), prj.as_deref());
+            }
+            read(&bytes, None, None)
+        }
+    }
+}
+
+/// Reads the bytes of a file; `dbf` and `prj` are what lies beside a shapefile.
+///
+/// # Errors
+/// [`Unreadable`] says what was expected and found.
+pub fn read(bytes: &[u8], dbf: Option<&[u8]>, prj: Option<&str>) -> Result<Vec<RawFeature>, Unreadable> {
+    if bytes.starts_with(&[0x1f, 0x8b]) {
+        let inner = bounded(MultiGzDecoder::new(bytes))?;
+        return read_plain(&inner, dbf, prj);
+    }
+    read_plain(bytes, dbf, prj)
+}
+
+fn read_plain(bytes: &[u8], dbf: Option<&[u8]>, prj: Option<&str>) -> Result<Vec<RawFeature>, Unreadable> {
+    if osm_pbf::looks_like(bytes) {
+        return Ok(osm_pbf::read(bytes)?.features());
+    }
+    if shapefile::looks_like(bytes) {
+        return shapefile::read(bytes, dbf, prj);
+    }
+    // A byte order mark and white space may stand before text.
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    if osm_xml::looks_like(text) {
+        return Ok(osm_xml::read(text)?.features());
+    }
+    if text.starts_with(b"{") {
+        let text = std::str::from_utf8(text).map_err(|e| Unreadable::new("GeoJSON", e.to_string()))?;
+        return geojson::read(text);
+    }
+    Err(Unreadable::new(
+        "OSM PBF, OSM XML, GeoJSON or a shapefile (.shp), perhaps in a gzip",
+        format!("{} bytes that begin with {:02x?}", bytes.len(), &bytes[..bytes.len().min(8)]),
+    ))
+}
+
+/// What Natural Earth (naturalearthdata.com) calls a thing, as tags.
+fn natural_earth(tags: &mut Tags, key: &str, value: &str) {
+    if key != "featurecla" {
+        return;
+    }
+    match value {
+        "River" | "Lake Centerline" | "Canal" => {
+            tags.push("waterway", if value == "Canal" { "canal" } else { "river" })
+        }
+        "Road" => tags.push("highway", "primary"),
+        "Railroad" => tags.push("railway", "rail"),
+        "Urban area" => tags.push("landuse", "residential"),
+        "Glaciated areas" => tags.push("natural", "glacier"),
+        "Lake" | "Alkaline Lake" | "Reservoir" => tags.push("natural", "water"),
+        _ => {}
+    }
+}
+
+fn bounded_file(path: &Path) -> Result<Vec<u8>, Unreadable> {
+    let file = std::fs::File::open(path).map_err(|e| Unreadable::new("a readable file", e.to_string()))?;
+    bounded(file)
+}
+
+fn bounded(stream: impl Read) -> Result<Vec<u8>, Unreadable> {
+    let mut bytes = Vec::new();
+    stream
+        .take(MAX_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|e| Unreadable::new("a readable file", e.to_string()))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(Unreadable::new(format!("at most {MAX_BYTES} bytes"), "more"));
+    }
+    Ok(bytes)
+}
