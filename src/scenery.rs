@@ -13,11 +13,17 @@ use sim::UtcTime;
 use std::sync::{Arc, Once};
 use terrain::block::Rings;
 use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
+use terrain::features::index::ObjectIndex;
 use terrain::store::World;
 use terrain::{Area, Geodetic};
 use visual::camera::View;
 use visual::gpu::AdapterKind;
+use visual::models::Mesh;
+use visual::models::things::Model;
+use visual::particles::Emitter;
 use visual::passes::lines::Stroke;
+use visual::passes::objects::{ObjectCounts, Objects};
+use visual::passes::particles::Particles;
 use visual::passes::terrain::{Terrain, TerrainLook};
 use visual::{Frame, Gpu, Layer, Renderer, Scene};
 
@@ -149,6 +155,13 @@ pub struct Scenery {
     pub look: Look,
     /// The ground on the device.
     pub terrain: Terrain,
+    /// All that stands on the ground; what shells meet too, drawn or not.
+    pub standing: Arc<ObjectIndex>,
+    /// What is drawn of it.
+    pub objects: Option<Objects>,
+    /// Shapes that replaced generated ones.
+    pub own_models: Vec<(Model, Mesh)>,
+    particles: Particles,
     renderer: Renderer,
 }
 
@@ -178,7 +191,17 @@ impl Scenery {
         );
         let window = Window::new(landscape, settings, DVec3::Y);
         let terrain = Terrain::new(&gpu, renderer.frame_layout(), renderer.scene_format(), window, look.ground);
-        Self { gpu, world, area, look, terrain, renderer }
+        let standing = Arc::new(ObjectIndex::new(world.features.clone(), &area));
+        let drawn = look.content.objects && !standing.is_empty();
+        let particles = Particles::new(renderer.frame_layout(), renderer.scene_format());
+        let objects = drawn.then(|| {
+            let (layout, _) = terrain.bindings();
+            let format = renderer.scene_format();
+            let reach_m = rings.radii_m[0].min(terrain::block::rings::NEAR_RADIUS_M);
+            let grid = world.field.grid();
+            Objects::new(&gpu, renderer.frame_layout(), layout, format, grid, standing.clone(), reach_m, look.wait)
+        });
+        Self { gpu, world, area, look, terrain, standing, objects, own_models: Vec::new(), particles, renderer }
     }
 
     /// Visibility drawn: as asked, clamped to what the window guarantees, metres.
@@ -216,16 +239,59 @@ impl Scenery {
     pub fn follow(&mut self, view: &View, speed_mps: f64, to_sun: DVec3) {
         self.terrain.follow(&self.gpu, view.eye_m, speed_mps, to_sun);
         self.terrain.prepare(&self.gpu, 0, view);
+        if let Some(objects) = &mut self.objects {
+            objects.follow(&self.gpu, view.eye_m, speed_mps);
+            objects.prepare(&self.gpu, 0, view);
+        }
     }
 
     /// Bytes on the device for what the scene holds.
     pub fn gpu_bytes(&self) -> usize {
-        self.terrain.gpu_bytes()
+        self.terrain.gpu_bytes() + self.objects.as_ref().map_or(0, Objects::gpu_bytes)
     }
 
     /// Whether all that the eye's place asks for is there.
     pub fn is_settled(&self) -> bool {
-        !self.terrain.window().is_jumping() && self.terrain.window().late_blocks() == 0
+        !self.terrain.window().is_jumping()
+            && self.terrain.window().late_blocks() == 0
+            && self.objects.as_ref().is_none_or(|objects| objects.late() == 0)
+    }
+
+    /// Takes the shapes that a world's folder has of its own.
+    ///
+    /// # Errors
+    /// [`Failure::Failed`] for a file that is no shape.
+    pub fn use_models_of(&mut self, world: Option<&std::path::Path>) -> Result<(), Failure> {
+        if self.objects.is_none() {
+            return Ok(());
+        }
+        self.use_models(crate::models::own(world)?);
+        Ok(())
+    }
+
+    /// Takes shapes in the place of generated ones.
+    pub fn use_models(&mut self, own: Vec<(Model, Mesh)>) {
+        if let Some(objects) = &mut self.objects
+            && !own.is_empty()
+        {
+            objects.set_models(&self.gpu, &own);
+            self.own_models = own;
+        }
+    }
+
+    /// The ground and what stands on it, as shells and bodies meet it.
+    pub fn scene_ground(&self) -> sim::SceneGround {
+        sim::SceneGround::from(self.area.clone()).with_objects(self.standing.clone())
+    }
+
+    /// What tracers, smoke and fire the next pictures show.
+    pub fn set_particles(&mut self, emitters: Vec<Emitter>) {
+        self.particles.set(emitters);
+    }
+
+    /// What stood on the ground of the last picture.
+    pub fn object_counts(&self) -> ObjectCounts {
+        self.objects.as_ref().map_or_else(ObjectCounts::default, Objects::counts)
     }
 
     /// Draws what was last followed, with strokes over it.
@@ -250,11 +316,16 @@ impl Scenery {
             time_s,
         };
         let frame = Frame { scene, views: vec![*view], hud };
-        let terrain = &self.terrain;
-        self.renderer.render(&self.gpu, &frame, &[target], |about, layer, pass| {
-            if layer == Layer::Solid {
+        self.particles.prepare(&self.gpu, 0, view, time_s);
+        let (terrain, objects, particles) = (&self.terrain, &self.objects, &self.particles);
+        self.renderer.render(&self.gpu, &frame, &[target], |about, layer, pass| match layer {
+            Layer::Solid => {
                 terrain.draw(about.index, pass);
+                if let Some(objects) = objects {
+                    objects.draw(about.index, terrain.bindings().1, pass);
+                }
             }
+            Layer::Blended => particles.draw(about.index, pass),
         })
     }
 }

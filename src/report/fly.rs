@@ -27,6 +27,8 @@ pub struct Fly {
     pub visibility_m: f64,
     /// The ground as drawn.
     pub terrain: Terrain,
+    /// Buildings and other standing things of the last frame.
+    pub objects_drawn: u32,
     /// The simulation.
     pub sim: Sim,
     /// Over every mesh drawn, in order. The same in every `--lockstep` run.

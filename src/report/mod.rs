@@ -87,7 +87,7 @@ mod tests {
              terrain.update_cpu_ms.p99 terrain.update_cpu_ms.max terrain.build_cpu_ms.mean terrain.build_cpu_ms.max \
              terrain.upload_bytes.max_frame terrain.upload_bytes.total terrain.memory_bytes.posts \
              terrain.memory_bytes.pyramid terrain.memory_bytes.payload_cpu terrain.memory_bytes.payload_gpu \
-             terrain.late_blocks terrain.holes sim.steps sim.hash mesh_hash image_hash shots peak_rss_mib"
+             terrain.late_blocks terrain.holes objects_drawn sim.steps sim.hash mesh_hash image_hash shots peak_rss_mib"
         );
         let verify = Verify { gpu: Some(Gpu::default()), ..Verify::default() };
         assert_eq!(
@@ -132,13 +132,13 @@ mod tests {
         );
         assert_eq!(
             names(&Shot::default()),
-            "out size image_hash visibility_m triangles_drawn triangles_all_level0 late_blocks"
+            "out size image_hash visibility_m triangles_drawn triangles_all_level0 objects_drawn late_blocks"
         );
         let gallery = Gallery { pictures: vec![Shot::default()], ..Gallery::default() };
         assert_eq!(
             names(&gallery),
             "pictures[].out pictures[].size pictures[].image_hash pictures[].visibility_m pictures[].triangles_drawn \
-             pictures[].triangles_all_level0 pictures[].late_blocks contact_sheet"
+             pictures[].triangles_all_level0 pictures[].objects_drawn pictures[].late_blocks contact_sheet"
         );
         assert_eq!(names(&Sight::default()), "visible hit clearance_min_m clearance_min_at_m distance_m ground_share");
         let result = BenchResult { yardstick: Some(Yardstick::default()), ..BenchResult::default() };

@@ -7,6 +7,8 @@
 pub const SOURCES: &[(&str, &str)] = &[
     ("heights.wgsl", include_str!("../../shaders/heights.wgsl")),
     ("lines.wgsl", include_str!("../../shaders/lines.wgsl")),
+    ("objects.wgsl", include_str!("../../shaders/objects.wgsl")),
+    ("particles.wgsl", include_str!("../../shaders/particles.wgsl")),
     ("sky.wgsl", include_str!("../../shaders/sky.wgsl")),
     ("terrain.wgsl", include_str!("../../shaders/terrain.wgsl")),
     ("upscale.wgsl", include_str!("../../shaders/upscale.wgsl")),

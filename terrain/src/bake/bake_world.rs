@@ -9,6 +9,7 @@ use super::raster::{Raster, Unreadable};
 use super::void_fill;
 use crate::features::cover_bake::{self, bake_cover};
 use crate::features::cover_rules::Climate;
+use crate::features::placing;
 use crate::field::Field;
 use crate::ground::Ground;
 use crate::projection::{Geodetic, Projection};
@@ -157,7 +158,9 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
         files: Vec::new(),
     };
     let name = request.name.clone();
-    let features = Arc::new(placed.features);
+    let mut features = placed.features;
+    features.placed = placing::placed(&features, &lakes, &field);
+    let features = Arc::new(features);
     progress("cover", 0.0);
     let climate = Climate::of(projection.centre(), info.statistics.mean_m);
     let cover = Arc::new(bake_cover(&field, &lakes, &features, &climate));

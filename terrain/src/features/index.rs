@@ -33,6 +33,17 @@ pub enum ObjectId {
     },
 }
 
+impl fmt::Display for ObjectId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Building(number) => write!(f, "building {number}"),
+            Self::Placed(number) => write!(f, "placed thing {number}"),
+            Self::Mast(number) => write!(f, "mast {number}"),
+            Self::PowerTower { line, point } => write!(f, "tower {point} of power line {line}"),
+        }
+    }
+}
+
 /// A thing in the tree.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Object {

@@ -7,5 +7,6 @@ pub mod index;
 pub mod lake_bake;
 pub mod lakes;
 pub mod model;
+pub mod placing;
 pub mod shape;
 pub mod solid;

@@ -145,7 +145,8 @@ mod tests {
                     let mut mesh = Mesh::default();
                     add(&mut mesh, &solid, class, from, 20.0);
                     for triangle in mesh.indices.chunks_exact(3) {
-                        let at = [0, 1, 2].map(|n| Vec3::from(mesh.vertices[triangle[n] as usize].position_m).as_dvec3());
+                        let at =
+                            [0, 1, 2].map(|n| Vec3::from(mesh.vertices[triangle[n] as usize].position_m).as_dvec3());
                         let normal = (at[1] - at[0]).cross(at[2] - at[0]);
                         if normal.length() < 1e-2 {
                             continue;

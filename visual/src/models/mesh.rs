@@ -81,7 +81,9 @@ impl Mesh {
     /// Adds a triangle list that lies in one plane.
     pub fn triangles(&mut self, corners: &[Vec3], indices: &[u32], normal: Vec3, paint: Paint) {
         let first = self.vertices.len() as u32;
-        self.vertices.extend(corners.iter().map(|at| self.vertex(*at, Vec2::ZERO, normal, paint)));
+        for at in corners {
+            self.vertices.push(self.vertex(*at, Vec2::ZERO, normal, paint));
+        }
         self.indices.extend(indices.iter().map(|index| first + index));
     }
 

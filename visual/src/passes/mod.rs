@@ -3,6 +3,9 @@
 pub mod detail;
 pub mod heights;
 pub mod lines;
+pub mod object_tiles;
+pub mod objects;
+pub mod particles;
 pub mod sky;
 pub mod terrain;
 pub mod terrain_textures;
