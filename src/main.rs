@@ -10,6 +10,7 @@ mod failure;
 mod flight;
 mod gpu_proof;
 mod hud;
+mod models;
 mod open_world;
 mod output;
 mod points;

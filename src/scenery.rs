@@ -14,6 +14,7 @@ use sim::UtcTime;
 use std::sync::{Arc, Once};
 use terrain::block::Rings;
 use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
+use terrain::features::index::ObjectIndex;
 use terrain::store::World;
 use terrain::{Area, Geodetic};
 use visual::camera::View;
@@ -152,6 +153,8 @@ pub struct Scenery {
     pub terrain: Terrain,
     /// What stands on it.
     pub things: Things,
+    /// All that stands on the ground; what shells meet too, drawn or not.
+    pub standing: Arc<ObjectIndex>,
     renderer: Renderer,
 }
 
@@ -182,9 +185,10 @@ impl Scenery {
         let near_m = settings.rings.radii_m[0];
         let window = Window::new(landscape.clone(), settings, DVec3::Y);
         let terrain = Terrain::new(&gpu, renderer.frame_layout(), renderer.scene_format(), window, look.ground);
+        let standing = Arc::new(ObjectIndex::new(world.features.clone(), &area));
         let latitude_rad = world.projection.centre().lat_rad;
-        let things = Things::new(&gpu, &renderer, &terrain, &landscape, latitude_rad, near_m, &look);
-        Self { gpu, world, area, look, terrain, things, renderer }
+        let things = Things::new(&gpu, &renderer, &terrain, &landscape, &standing, latitude_rad, near_m, &look);
+        Self { gpu, world, area, look, terrain, things, standing, renderer }
     }
 
     /// Visibility drawn: as asked, clamped to what the window guarantees, metres.
@@ -240,6 +244,19 @@ impl Scenery {
         !self.terrain.window().is_jumping() && self.late() == 0
     }
 
+    /// Takes the shapes that a world's folder has of its own.
+    ///
+    /// # Errors
+    /// [`Failure::Failed`] for a file that is no shape.
+    pub fn use_models_of(&mut self, world: Option<&std::path::Path>) -> Result<(), Failure> {
+        self.things.use_models_of(&self.gpu, world)
+    }
+
+    /// The ground and what stands on it, as shells and bodies meet it.
+    pub fn scene_ground(&self) -> sim::SceneGround {
+        sim::SceneGround::from(self.area.clone()).with_objects(self.standing.clone())
+    }
+
     /// Draws what was last followed, with strokes over it.
     ///
     /// # Errors
@@ -262,6 +279,7 @@ impl Scenery {
             time_s,
         };
         let frame = Frame { scene, views: vec![*view], hud };
+        self.things.prepare_particles(&self.gpu, 0, view, time_s);
         let (terrain, things) = (&self.terrain, &self.things);
         self.renderer.render(&self.gpu, &frame, &[target], |about, layer, pass| {
             things.draw(about.index, layer, terrain, pass);

@@ -3,6 +3,8 @@
 //! The one file that knows both the simulation and the picture. The eye is the aircraft's reference point to the bit, in
 //! f64; the attitude given here turns view axes (x right, y up, z backward) into the world's.
 
+pub mod effects;
+
 use crate::hud::{self, Anchor, HudInput};
 use crate::scenery;
 use glam::{DQuat, DVec3, Vec2};

@@ -59,6 +59,7 @@ pub fn write(scenery: &Scenery, picture: &Picture, out: &Path) -> Result<report:
         visibility_m: scenery.visibility_m(),
         triangles_drawn: counts.triangles,
         triangles_all_level0: counts.triangles_all_level0,
+        objects_drawn: scenery.things.object_counts().all(),
         late_blocks: scenery.late(),
     })
 }

@@ -1,16 +1,25 @@
-//! All that stands and lies on the ground of a scenery: what is draped on it, plants, forests.
+//! All that stands and lies on the ground of a scenery: what is draped on it, plants, forests, buildings and other
+//! things; and the smoke and fire over it.
 //!
 //! Each kind is there only if the world has something of it and the look shows it: no pass, no thread, no byte else.
 
+use crate::failure::Failure;
 use crate::scenery::Look;
 use glam::DVec3;
+use std::path::Path;
 use std::sync::Arc;
 use terrain::block::Landscape;
 use terrain::block::rings::NEAR_RADIUS_M;
+use terrain::features::index::ObjectIndex;
 use vegetation::place::Nursery;
 use visual::camera::View;
+use visual::models::Mesh;
+use visual::models::things::Model;
+use visual::particles::Emitter;
 use visual::passes::canopy::{CanopyCounts, CanopyPass};
+use visual::passes::objects::{ObjectCounts, Objects};
 use visual::passes::overlay::{OverlayPass, OverlaySettings};
+use visual::passes::particles::Particles;
 use visual::passes::plants::{PlantCounts, Plants};
 use visual::passes::terrain::Terrain;
 use visual::{Gpu, Layer, RenderPass, Renderer};
@@ -20,6 +29,10 @@ pub struct Things {
     overlay: Option<OverlayPass>,
     plants: Option<Plants>,
     canopy: Option<CanopyPass>,
+    objects: Option<Objects>,
+    /// Shapes that replaced generated ones.
+    own_models: Vec<(Model, Mesh)>,
+    particles: Particles,
     /// The view last followed.
     view: Option<View>,
 }
@@ -31,6 +44,7 @@ impl Things {
         renderer: &Renderer,
         terrain: &Terrain,
         landscape: &Arc<Landscape>,
+        standing: &Arc<ObjectIndex>,
         latitude_rad: f64,
         near_m: f64,
         look: &Look,
@@ -46,7 +60,12 @@ impl Things {
         let plants =
             nursery.as_ref().and_then(|n| Plants::new(gpu, frame, ground, format, n, share, near_m, look.wait));
         let canopy = nursery.as_ref().and_then(|n| CanopyPass::new(gpu, frame, ground, format, n, near_m, look.wait));
-        Self { overlay: overlay.flatten(), plants, canopy, view: None }
+        let grid = landscape.ground.field().grid();
+        let objects = (look.content.objects && !standing.is_empty())
+            .then(|| Objects::new(gpu, frame, ground, format, grid, standing.clone(), near_m, look.wait));
+        let particles = Particles::new(frame, format);
+        let overlay = overlay.flatten();
+        Self { overlay, plants, canopy, objects, own_models: Vec::new(), particles, view: None }
     }
 
     /// Streams around the eye and culls for a view. The terrain must have followed already.
@@ -64,7 +83,16 @@ impl Things {
             canopy.follow(gpu, eye_m, speed_mps);
             canopy.prepare(gpu, 0, view);
         }
+        if let Some(objects) = &mut self.objects {
+            objects.follow(gpu, eye_m, speed_mps);
+            objects.prepare(gpu, 0, view);
+        }
         self.view = Some(*view);
+    }
+
+    /// Places the particles of a view at a time of the scene, seconds.
+    pub fn prepare_particles(&mut self, gpu: &Gpu, view_index: usize, view: &View, time_s: f64) {
+        self.particles.prepare(gpu, view_index, view, time_s);
     }
 
     /// Records a layer of a followed view; `ground` draws the blocks.
@@ -72,6 +100,9 @@ impl Things {
         match layer {
             Layer::Solid => {
                 // What stands up hides ground behind it, which then costs no pixels.
+                if let Some(objects) = &self.objects {
+                    objects.draw(view_index, terrain.bindings().1, pass);
+                }
                 if let Some(plants) = &self.plants {
                     plants.draw(view_index, terrain.bindings().1, pass);
                 }
@@ -83,7 +114,7 @@ impl Things {
                     overlay.draw(view_index, terrain, pass);
                 }
             }
-            Layer::Blended => {}
+            Layer::Blended => self.particles.draw(view_index, pass),
         }
     }
 
@@ -91,6 +122,42 @@ impl Things {
     pub fn plants_drawn(&self) -> (PlantCounts, CanopyCounts) {
         let counted = self.plants.as_ref().zip(self.view.as_ref()).map(|(plants, view)| plants.counts(view));
         (counted.unwrap_or_default(), self.canopy.as_ref().map_or_else(CanopyCounts::default, CanopyPass::counts))
+    }
+
+    /// What stood on the ground of the last picture.
+    pub fn object_counts(&self) -> ObjectCounts {
+        self.objects.as_ref().map_or_else(ObjectCounts::default, Objects::counts)
+    }
+
+    /// What tracers, smoke and fire the next pictures show.
+    pub fn set_particles(&mut self, emitters: Vec<Emitter>) {
+        self.particles.set(emitters);
+    }
+
+    /// Takes the shapes that a world's folder has of its own.
+    ///
+    /// # Errors
+    /// [`Failure::Failed`] for a file that is no shape.
+    pub fn use_models_of(&mut self, gpu: &Gpu, world: Option<&Path>) -> Result<(), Failure> {
+        if self.objects.is_some() {
+            self.use_models(gpu, crate::models::own(world)?);
+        }
+        Ok(())
+    }
+
+    /// Takes shapes in the place of generated ones.
+    pub fn use_models(&mut self, gpu: &Gpu, own: Vec<(Model, Mesh)>) {
+        if let Some(objects) = &mut self.objects
+            && !own.is_empty()
+        {
+            objects.set_models(gpu, &own);
+            self.own_models = own;
+        }
+    }
+
+    /// Shapes that replaced generated ones.
+    pub fn own_models(&self) -> &[(Model, Mesh)] {
+        &self.own_models
     }
 
     /// Longest time that placing the plants of a tile took, milliseconds; 0 without plants.
@@ -102,11 +169,12 @@ impl Things {
     pub fn late(&self) -> u64 {
         let overlay = self.overlay.as_ref().map_or(0, OverlayPass::late);
         let plants = self.plants.as_ref().map_or(0, Plants::late);
-        (overlay + plants) as u64
+        let objects = self.objects.as_ref().map_or(0, Objects::late);
+        (overlay + plants + objects) as u64
     }
 
     /// Bytes on the device.
     pub fn gpu_bytes(&self) -> usize {
-        self.overlay.as_ref().map_or(0, OverlayPass::gpu_bytes)
+        self.overlay.as_ref().map_or(0, OverlayPass::gpu_bytes) + self.objects.as_ref().map_or(0, Objects::gpu_bytes)
     }
 }

@@ -13,6 +13,8 @@ use crate::ballistics::path::StepPath;
 use crate::case::Case;
 use crate::planet::{Place, Planet, Shape};
 use glam::{DMat2, DVec2, DVec3};
+use std::sync::Arc;
+use terrain::features::index::ObjectIndex;
 use terrain::store::World;
 use terrain::{Area, Geodetic, Ground, Projection};
 
@@ -23,6 +25,8 @@ const HALF_S: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub struct WorldGround {
     area: Area,
+    /// What stands on it.
+    objects: Option<Arc<ObjectIndex>>,
     projection: Projection,
     planet: Planet,
     /// For a flat frame.
@@ -43,10 +47,13 @@ struct Laid {
 impl WorldGround {
     /// The ground of a world under a case.
     pub fn new(world: &World, case: &Case) -> Self {
-        Self::over(Ground::new(world.field.clone()).whole(), world.projection.clone(), case)
+        let area = Ground::new(world.field.clone()).whole();
+        let objects = ObjectIndex::new(world.features.clone(), &area);
+        let objects = (!objects.is_empty()).then(|| Arc::new(objects));
+        Self { objects, ..Self::over(area, world.projection.clone(), case) }
     }
 
-    /// The same of any ground with its map.
+    /// The same of any bare ground with its map.
     pub fn over(area: Area, projection: Projection, case: &Case) -> Self {
         let laid = matches!(case.planet.shape, Shape::Flat { .. }).then(|| match case.initial.flat_m {
             Some(at) => Laid {
@@ -66,7 +73,7 @@ impl WorldGround {
                 }
             }
         });
-        Self { area, projection, planet: case.planet, laid }
+        Self { area, objects: None, projection, planet: case.planet, laid }
     }
 
     /// A position of the frame in the world.
@@ -111,7 +118,7 @@ impl WorldGround {
         self.area.height_m(at.x, at.z)
     }
 
-    /// Where a step first meets the ground; its ends are position and velocity in the frame.
+    /// Where a step first meets the ground or a thing that stands on it; its ends are position and velocity in the frame.
     pub fn impact(&self, from: (DVec3, DVec3), to: (DVec3, DVec3), step_s: f64) -> Option<Impact> {
         let ((from_r, from_v), (to_r, to_v)) = (from, to);
         let path = StepPath {
@@ -121,7 +128,7 @@ impl WorldGround {
             to_mps: self.world_mps(to_r, to_v),
             step_s,
         };
-        impact::ground_impact(&path, &self.area)
+        impact::standing_impact(&path, &self.area, self.objects.as_deref())
     }
 }
 

@@ -30,10 +30,11 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
     let look = Look::of(&args.view, gpu.report.kind, true);
     let target = Offscreen::new(&gpu, look.size_px).map_err(device_failed)?;
     let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), look);
+    scenery.use_models_of(args.world.as_deref())?;
     let length = Length::of(args, true);
     let plan = Plan::new(args, length, LOCKSTEP_HZ, &world, &scenery.area)?;
     let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
-    let ground = sim::SceneGround::from(scenery.area.clone());
+    let ground = scenery.scene_ground();
     let mut scene = plan.scene(date);
     let mut sun = Sun::new(&world, date)?;
     let head = Head::default();

@@ -39,10 +39,11 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     let look = Look { keep_depth: look.msaa == 1, ..look };
     let target = Offscreen::new(&gpu, look.size_px).map_err(device_failed)?;
     let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), look);
+    scenery.use_models_of(args.world.as_deref())?;
     let length = Length::of(args, true);
     let plan = Plan::new(args, length, hz, &world, &scenery.area)?;
     let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
-    let ground = sim::SceneGround::from(scenery.area.clone());
+    let ground = scenery.scene_ground();
     let mut scene = plan.scene(date);
     sim::lockstep(&mut scene, &ground, 1);
     // Held until the first picture, which takes as long as filling the window does.

@@ -36,11 +36,14 @@ pub struct Taken {
 /// [`Failure::Failed`] if the device fails or a file cannot be written.
 pub fn take(flown: Scenery, plan: &Plan, date: sim::UtcTime, folder: &Path) -> Result<Taken, Failure> {
     let bar = Progress::new("taking pictures");
+    let own_models = flown.things.own_models().to_vec();
     let Scenery { gpu, world, look, .. } = flown;
     let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), Look { wait: true, keep_depth: false, ..look });
+    let gpu = scenery.gpu.clone();
+    scenery.things.use_models(&gpu, own_models);
     let size_px = look.size_px;
     let target = Offscreen::new(&scenery.gpu, size_px).map_err(device_failed)?;
-    let ground = sim::SceneGround::from(scenery.area.clone());
+    let ground = scenery.scene_ground();
     let mut scene = plan.scene(date);
     let to_sun = Sun::new(&world, date)?.at(&world, date);
     let head = Head::default();

@@ -6,7 +6,7 @@ use crate::report::{
     self, Adapter, BuildCpuMs, Fly, FrameMs, MemoryBytes, Sim, Terrain, Track, UpdateCpuMs, UploadBytes, quantile,
 };
 use crate::scenery::Scenery;
-use crate::stage;
+use crate::stage::{self, effects::Effects};
 use crate::thread_time;
 use glam::DVec3;
 use sim::Snapshot;
@@ -60,6 +60,7 @@ pub struct Record {
     mesh: RunningHash,
     is_repeatable: bool,
     updated: bool,
+    effects: Effects,
 }
 
 /// What the record cannot know by itself.
@@ -95,11 +96,13 @@ impl Record {
             mesh: RunningHash::default(),
             is_repeatable,
             updated: false,
+            effects: Effects::default(),
         }
     }
 
     /// Lets the scenery follow and writes down what that cost this thread.
     pub fn follow(&mut self, scenery: &mut Scenery, view: &View, snapshot: &Snapshot, to_sun: DVec3) {
+        scenery.things.set_particles(self.effects.of(snapshot));
         let before = thread_time::spent();
         scenery.follow(view, stage::ground_speed_mps(snapshot), to_sun);
         let spent = thread_time::spent().saturating_sub(before);
@@ -232,6 +235,7 @@ impl Record {
                 canopy_stands_for: canopy.stands_for.round() as u64,
                 placed_ms_max: scenery.things.plants_placed_ms_max(),
             },
+            objects_drawn: scenery.things.object_counts().all(),
             sim: Sim { steps: ending.steps, hash: ending.sim_hash.clone() },
             mesh_hash: self.is_repeatable.then(|| self.mesh.shown()),
             image_hash: None,

@@ -160,11 +160,12 @@ impl<'a> Cockpit<'a> {
         let before = self.stage.take().map(|(scenery, _)| scenery.look.ground);
         let mut look = Look { size_px, ..Look::of(&self.args.view, gpu.report.kind, false) };
         look.ground = before.unwrap_or(look.ground);
-        let scenery = Scenery::new(gpu.clone(), format, self.world.clone(), look);
+        let mut scenery = Scenery::new(gpu.clone(), format, self.world.clone(), look);
+        scenery.use_models_of(self.args.world.as_deref())?;
         if self.flown.is_none() {
             let plan = Plan::new(self.args, self.length, LOCKSTEP_HZ, &self.world, &scenery.area)?;
             let date = self.args.view.time.unwrap_or_else(|| scenery::default_moment(&self.world));
-            let ground = sim::SceneGround::from(scenery.area.clone());
+            let ground = scenery.scene_ground();
             let mut scene = plan.scene(date);
             sim::lockstep(&mut scene, &ground, 1);
             // Held until the first picture is there.

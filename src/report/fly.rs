@@ -29,6 +29,8 @@ pub struct Fly {
     pub terrain: Terrain,
     /// The plants as drawn.
     pub plants: Plants,
+    /// Buildings and other standing things of the last frame.
+    pub objects_drawn: u32,
     /// The simulation.
     pub sim: Sim,
     /// Over every mesh drawn, in order. The same in every `--lockstep` run.

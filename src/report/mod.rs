@@ -28,7 +28,7 @@ pub use sight::{Hit, Sight};
 pub use simulate::{Simulated, Stiffness, TrimFound};
 pub use trade::{Knob, KnobPoint, Trade};
 pub use trajectory::TrajectoryReport;
-pub use verify::{Draped, EdgesChecked, Far, Gpu, Near, Verify};
+pub use verify::{EdgesChecked, Far, Gpu, Near, Verify};
 pub use world::{Cover, Extent, FeatureCount, Lake, Source, Voids, WorldReport};
 
 /// A 64-bit hash as it is reported.
@@ -88,10 +88,11 @@ mod tests {
              terrain.update_cpu_ms.p99 terrain.update_cpu_ms.max terrain.build_cpu_ms.mean terrain.build_cpu_ms.max \
              terrain.upload_bytes.max_frame terrain.upload_bytes.total terrain.memory_bytes.posts \
              terrain.memory_bytes.pyramid terrain.memory_bytes.payload_cpu terrain.memory_bytes.payload_gpu \
-             terrain.late_blocks terrain.holes plants.drawn plants.canopy_stands_for plants.placed_ms_max sim.steps \
-             sim.hash mesh_hash image_hash shots peak_rss_mib"
+             terrain.late_blocks terrain.holes plants.drawn plants.canopy_stands_for plants.placed_ms_max \
+             objects_drawn sim.steps sim.hash mesh_hash image_hash shots peak_rss_mib"
         );
-        let verify = Verify { overlay: Some(Draped::default()), gpu: Some(Gpu::default()), ..Verify::default() };
+        let verify =
+            Verify { overlay: Some(super::verify::Draped::default()), gpu: Some(Gpu::default()), ..Verify::default() };
         assert_eq!(
             names(&verify),
             "t_junctions position_mismatches edges_checked.templates edges_checked.pairs edges_checked.window eyes \
@@ -135,13 +136,13 @@ mod tests {
         );
         assert_eq!(
             names(&Shot::default()),
-            "out size image_hash visibility_m triangles_drawn triangles_all_level0 late_blocks"
+            "out size image_hash visibility_m triangles_drawn triangles_all_level0 objects_drawn late_blocks"
         );
         let gallery = Gallery { pictures: vec![Shot::default()], ..Gallery::default() };
         assert_eq!(
             names(&gallery),
             "pictures[].out pictures[].size pictures[].image_hash pictures[].visibility_m pictures[].triangles_drawn \
-             pictures[].triangles_all_level0 pictures[].late_blocks contact_sheet"
+             pictures[].triangles_all_level0 pictures[].objects_drawn pictures[].late_blocks contact_sheet"
         );
         assert_eq!(names(&Sight::default()), "visible hit clearance_min_m clearance_min_at_m distance_m ground_share");
         let result = BenchResult { yardstick: Some(Yardstick::default()), ..BenchResult::default() };

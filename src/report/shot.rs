@@ -17,6 +17,8 @@ pub struct Shot {
     pub triangles_drawn: u64,
     /// Triangles of the same blocks at level 0.
     pub triangles_all_level0: u64,
+    /// Buildings and other standing things.
+    pub objects_drawn: u32,
     /// Blocks wanted and absent.
     pub late_blocks: u64,
 }

@@ -22,6 +22,7 @@ pub fn run(args: &ShotArgs, output: Output) -> Result<(), Failure> {
     let mut look = Look::of(&args.view, gpu.report.kind, true);
     look.ground.wireframe = args.wireframe;
     let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), look);
+    scenery.use_models_of(args.world.as_deref())?;
     let eye_m = scenery::position(&world, &scenery.area, args.eye)?;
     let at = Standpoint {
         eye_m,

@@ -11,6 +11,8 @@ pub mod capture;
 pub mod frame;
 mod glyphs;
 pub mod gpu;
+pub mod models;
+pub mod particles;
 pub mod passes;
 pub mod proof;
 pub mod renderer;

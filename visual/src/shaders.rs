@@ -10,6 +10,8 @@ pub const SOURCES: &[(&str, &str)] = &[
     ("lines.wgsl", include_str!("../../shaders/lines.wgsl")),
     ("plants.wgsl", include_str!("../../shaders/plants.wgsl")),
     ("overlay.wgsl", include_str!("../../shaders/overlay.wgsl")),
+    ("objects.wgsl", include_str!("../../shaders/objects.wgsl")),
+    ("particles.wgsl", include_str!("../../shaders/particles.wgsl")),
     ("sky.wgsl", include_str!("../../shaders/sky.wgsl")),
     ("terrain.wgsl", include_str!("../../shaders/terrain.wgsl")),
     ("upscale.wgsl", include_str!("../../shaders/upscale.wgsl")),

@@ -1,4 +1,4 @@
-//! Where a step's path first strikes: the ground, or a target before it.
+//! Where a step's path first strikes: the ground, a thing that stands on it, or a target before it.
 //!
 //! Frame: the world's (X east, Y up, Z south), metres, seconds. The ground is the level-0 triangles of an
 //! [`terrain::Area`]; over void and beyond the world there is none.
@@ -14,6 +14,7 @@ use super::targets::{Target, TargetImpact, target_impact};
 use crate::snapshot::StableId;
 use glam::DVec3;
 use terrain::Area;
+use terrain::features::index::{ObjectId, ObjectIndex};
 
 /// Where a path meets the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,12 +25,14 @@ pub struct Impact {
     pub time_s: f64,
     /// The point; on the ground, except where the path starts under it.
     pub point_m: DVec3,
-    /// Upward unit normal of the triangle.
+    /// Upward unit normal of the triangle; outward of a thing.
     pub normal: DVec3,
     /// Velocity there.
     pub velocity_mps: DVec3,
     /// Angle between velocity and triangle, 0 (grazing, or at rest) to a right angle.
     pub grazing_rad: f64,
+    /// The thing that stands on the ground and was met; `None` is the ground.
+    pub object: Option<ObjectId>,
 }
 
 /// What a path strikes first.
@@ -79,7 +82,38 @@ pub fn ground_impact(path: &StepPath, area: &Area) -> Option<Impact> {
         normal: hit.normal,
         velocity_mps,
         grazing_rad: velocity_mps.dot(hit.normal).abs().atan2(velocity_mps.cross(hit.normal).length()),
+        object: None,
     })
+}
+
+/// The first point of the path on a thing that stands on the ground; swept as the ground is.
+pub fn object_impact(path: &StepPath, objects: &ObjectIndex) -> Option<Impact> {
+    if !path.is_sound() || objects.is_empty() {
+        return None;
+    }
+    let whole = Span { path: *path, from: 0.0, to: 1.0 };
+    let (span, hit) = chords::first_touch(whole, &|span| objects.segment(span.path.from_m, span.path.to_m))?;
+    let fraction = span.from + (span.to - span.from) * span.path.fraction_abreast(hit.point);
+    let velocity_mps = path.velocity_mps(fraction);
+    Some(Impact {
+        fraction,
+        time_s: fraction * path.step_s,
+        point_m: hit.point,
+        normal: hit.normal,
+        velocity_mps,
+        grazing_rad: velocity_mps.dot(hit.normal).abs().atan2(velocity_mps.cross(hit.normal).length()),
+        object: Some(hit.which),
+    })
+}
+
+/// The earlier of ground and things; at the same instant the thing.
+pub fn standing_impact(path: &StepPath, area: &Area, objects: Option<&ObjectIndex>) -> Option<Impact> {
+    let ground = ground_impact(path, area);
+    let thing = objects.and_then(|objects| object_impact(path, objects));
+    match (ground, thing) {
+        (Some(ground), Some(thing)) if ground.fraction < thing.fraction => Some(ground),
+        (ground, thing) => thing.or(ground),
+    }
 }
 
 /// The earlier of ground and targets; at the same instant the target. `own` is left out.

@@ -282,11 +282,17 @@ impl<'a> Flight<'a> {
         let (from, to) = (observer.seen(step.from_s, &step.from), observer.seen(step.from_s + step.length_s, next));
         let muzzle_m = observer.launch.place.altitude_m;
         for end in &self.ends {
+            let mut event = end.event().to_owned();
             let cut_s = match end {
                 End::Ground if observer.ground.is_some() => observer
                     .ground
                     .and_then(|ground| ground.impact(parts(&from), parts(&to), step.length_s))
-                    .map(|impact| impact.time_s),
+                    .map(|impact| {
+                        if let Some(thing) = impact.object {
+                            event = thing.to_string();
+                        }
+                        impact.time_s
+                    }),
                 End::Ground | End::Return => {
                     let level_m = if *end == End::Ground { 0.0 } else { muzzle_m };
                     let above = |_: f64, seen: &State| observer.altitude_m(seen) - level_m;
@@ -307,7 +313,7 @@ impl<'a> Flight<'a> {
                 && first.as_ref().is_none_or(|(earliest, ..)| cut_s < *earliest)
             {
                 let last = if cut_s < step.length_s { self.at(step, cut_s)? } else { *next };
-                first = Some((cut_s, last, end.event().to_owned()));
+                first = Some((cut_s, last, event));
             }
         }
         Ok(first)

@@ -303,7 +303,7 @@ impl Body {
             to_mps: world_from_ned(motion::velocity(&y)),
             step_s: dt_s,
         };
-        if let Some(touch) = ground.touch(&path) {
+        if let Some(touch) = ground.touch_all(&path) {
             self.state = y;
             return self.end(EndReason::Ground, Some(touch));
         }
@@ -342,6 +342,7 @@ impl Body {
             point_m: world_from_ned(motion::position(&self.state)),
             normal: DVec3::ZERO,
             velocity_mps: world_from_ned(motion::velocity(&self.state)),
+            object: None,
         });
         let turned = motion::attitude(&self.state);
         self.state = motion::state(ned_from_world(touch.point_m), turned, 0.0, DVec3::ZERO, DVec3::ZERO);

@@ -9,6 +9,7 @@
 use super::codec::{Coded, FNV_BASIS, Reader, SaveError, coded, coded_choice, fnv};
 use crate::snapshot::StableId;
 use glam::DVec3;
+use terrain::features::index::ObjectId;
 
 /// How long an event stays in snapshots, simulated seconds.
 pub const KEPT_S: f64 = 0.5;
@@ -42,8 +43,10 @@ pub struct Strike {
     pub owner: StableId,
     /// Which of the owner's rounds it was, from 0.
     pub round: u64,
-    /// The target; `None` is the ground.
+    /// The target; `None` is the ground or what stands on it.
     pub target: Option<StableId>,
+    /// The building or other standing thing of the world; `None` is the ground or a target.
+    pub object: Option<ObjectId>,
     /// Where.
     pub point_m: DVec3,
     /// The same in the target's own frame; the point itself on the ground.
@@ -53,7 +56,31 @@ pub struct Strike {
     /// Velocity relative to what was struck, m/s.
     pub velocity_mps: DVec3,
 }
-coded!(Strike { projectile, kind, owner, round, target, point_m, point_in_target_m, normal, velocity_mps });
+coded!(Strike { projectile, kind, owner, round, target, object, point_m, point_in_target_m, normal, velocity_mps });
+
+impl Coded for ObjectId {
+    fn put(&self, out: &mut Vec<u8>) {
+        let (kind, numbers) = match *self {
+            Self::Building(number) => (0_u8, [number, 0]),
+            Self::Placed(number) => (1, [number, 0]),
+            Self::Mast(number) => (2, [number, 0]),
+            Self::PowerTower { line, point } => (3, [line, point]),
+        };
+        kind.put(out);
+        numbers.iter().for_each(|number| number.put(out));
+    }
+
+    fn take(from: &mut Reader<'_>) -> Result<Self, SaveError> {
+        let (kind, number, point): (u8, u32, u32) = (from.take()?, from.take()?, from.take()?);
+        Ok(match kind {
+            0 => Self::Building(number),
+            1 => Self::Placed(number),
+            2 => Self::Mast(number),
+            3 => Self::PowerTower { line: number, point },
+            found => return Err(from.refuse(format_args!("standing thing: expected 0..=3, found {found}"))),
+        })
+    }
+}
 
 /// What happened.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,15 +4,18 @@
 //! path meets it exactly ([`ground_impact`]). Made of a closure, as tests and simple callers do, there are only heights:
 //! a path is then looked at every [`LOOK_M`] of its way, and a ridge narrower than that may be missed.
 //!
+//! What stands on it may come with it ([`SceneGround::with_objects`]): the same index that the picture draws from.
+//!
 //! Invariant others rely on: heights and impacts are those of one surface, and void is no ground to either.
 
 use crate::HeightAt;
-use crate::ballistics::impact::ground_impact;
+use crate::ballistics::impact::{Impact, ground_impact, object_impact};
 use crate::ballistics::path::StepPath;
 use glam::DVec3;
 use std::fmt;
 use std::sync::Arc;
 use terrain::Area;
+use terrain::features::index::{ObjectId, ObjectIndex};
 
 /// Way between two looks at a ground that is a closure, metres: posts stand at least 25 m apart.
 pub const LOOK_M: f64 = 25.0;
@@ -24,19 +27,22 @@ const MOST_LOOKS: f64 = 4_096.0;
 pub struct SceneGround {
     heights: Arc<HeightAt>,
     area: Option<Area>,
+    objects: Option<Arc<ObjectIndex>>,
 }
 
-/// Where a path meets the ground.
+/// Where a path meets the ground, or a thing that stands on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundTouch {
     /// Fraction of the path, 0..=1.
     pub fraction: f64,
     /// The point.
     pub point_m: DVec3,
-    /// Upward unit normal of the ground there.
+    /// Upward unit normal of the ground there; outward of a thing.
     pub normal: DVec3,
     /// Velocity of what meets it, m/s.
     pub velocity_mps: DVec3,
+    /// The thing that was met; `None` is the ground itself.
+    pub object: Option<ObjectId>,
 }
 
 impl fmt::Debug for SceneGround {
@@ -48,20 +54,27 @@ impl fmt::Debug for SceneGround {
 impl From<Area> for SceneGround {
     fn from(area: Area) -> Self {
         let of = area.clone();
-        Self { heights: Arc::new(move |x_m, z_m| of.height_m(x_m, z_m)), area: Some(area) }
+        Self { heights: Arc::new(move |x_m, z_m| of.height_m(x_m, z_m)), area: Some(area), objects: None }
     }
 }
 
 impl From<Arc<HeightAt>> for SceneGround {
     fn from(heights: Arc<HeightAt>) -> Self {
-        Self { heights, area: None }
+        Self { heights, area: None, objects: None }
     }
 }
 
 impl SceneGround {
     /// The ground of a function of plan position (x, z).
     pub fn heights(height_m: impl Fn(f64, f64) -> Option<f64> + Send + Sync + 'static) -> Self {
-        Self { heights: Arc::new(height_m), area: None }
+        Self { heights: Arc::new(height_m), area: None, objects: None }
+    }
+
+    /// The same ground with what stands on it; without a thing it costs nothing.
+    #[must_use]
+    pub fn with_objects(mut self, objects: Arc<ObjectIndex>) -> Self {
+        self.objects = (!objects.is_empty()).then_some(objects);
+        self
     }
 
     /// No ground anywhere.
@@ -85,13 +98,18 @@ impl SceneGround {
     /// The first point of a path on or under the ground.
     pub fn touch(&self, path: &StepPath) -> Option<GroundTouch> {
         let Some(area) = &self.area else { return self.looked_at(path) };
-        let impact = ground_impact(path, area)?;
-        Some(GroundTouch {
-            fraction: impact.fraction,
-            point_m: impact.point_m,
-            normal: impact.normal,
-            velocity_mps: impact.velocity_mps,
-        })
+        ground_impact(path, area).map(|impact| touched(&impact))
+    }
+
+    /// The first point of a path on the ground or on a thing that stands on it; at the same instant the thing.
+    pub fn touch_all(&self, path: &StepPath) -> Option<GroundTouch> {
+        let ground = self.touch(path);
+        let thing = self.objects.as_ref().and_then(|objects| object_impact(path, objects));
+        match (ground, thing) {
+            (Some(ground), Some(thing)) if ground.fraction < thing.fraction => Some(ground),
+            (ground, None) => ground,
+            (_, Some(thing)) => Some(touched(&thing)),
+        }
     }
 
     fn looked_at(&self, path: &StepPath) -> Option<GroundTouch> {
@@ -119,6 +137,7 @@ impl SceneGround {
             point_m,
             normal: self.slope(point_m),
             velocity_mps: path.velocity_mps(high),
+            object: None,
         })
     }
 
@@ -131,6 +150,11 @@ impl SceneGround {
         let (east, south) = (side(0.5, 0.0).unwrap_or(0.0), side(0.0, 0.5).unwrap_or(0.0));
         DVec3::new(-east, 1.0, -south).normalize()
     }
+}
+
+fn touched(impact: &Impact) -> GroundTouch {
+    let Impact { fraction, point_m, normal, velocity_mps, object, .. } = *impact;
+    GroundTouch { fraction, point_m, normal, velocity_mps, object }
 }
 
 #[cfg(test)]

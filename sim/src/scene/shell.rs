@@ -155,16 +155,19 @@ impl<'a> Range<'a> {
             owner: shell.owner,
             round: shell.round,
             target: None,
+            object: None,
             point_m: DVec3::ZERO,
             point_in_target_m: DVec3::ZERO,
             normal: DVec3::ZERO,
             velocity_mps: DVec3::ZERO,
         };
-        if let Some(touch) = self.ground.touch(path)
+        if let Some(touch) = self.ground.touch_all(path)
             && first.is_none_or(|first| touch.fraction < first.fraction)
         {
             let (point_m, normal, velocity_mps) = (touch.point_m, touch.normal, touch.velocity_mps);
-            return Some((Strike { point_m, point_in_target_m: point_m, normal, velocity_mps, ..of }, touch.fraction));
+            let strike =
+                Strike { object: touch.object, point_m, point_in_target_m: point_m, normal, velocity_mps, ..of };
+            return Some((strike, touch.fraction));
         }
         first.map(|impact| {
             let TargetImpact { id, fraction, point_m, point_in_target_m, normal, velocity_mps, .. } = impact;

@@ -11,6 +11,7 @@ use crate::features::cover_bake::{self, bake_cover};
 use crate::features::cover_rules::Climate;
 use crate::features::lakes::Lakes;
 use crate::features::model::Airfield;
+use crate::features::placing;
 use crate::field::Field;
 use crate::grid::Grid;
 use crate::ground::Ground;
@@ -163,7 +164,9 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
         files: Vec::new(),
     };
     let name = request.name.clone();
-    let features = Arc::new(placed.features);
+    let mut features = placed.features;
+    features.placed = placing::placed(&features, &lakes, &field);
+    let features = Arc::new(features);
     progress("cover", 0.0);
     let climate = Climate::of(projection.centre(), info.statistics.mean_m);
     let cover = Arc::new(bake_cover(&field, &lakes, &features, &climate));

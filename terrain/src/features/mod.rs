@@ -3,6 +3,10 @@
 pub mod cover;
 pub mod cover_bake;
 pub mod cover_rules;
+pub mod index;
 pub mod lake_bake;
 pub mod lakes;
 pub mod model;
+pub mod placing;
+pub mod shape;
+pub mod solid;

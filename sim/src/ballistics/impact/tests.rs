@@ -448,3 +448,37 @@ fn the_far_corner_of_a_world_of_400_km_is_as_exact() {
     }
     assert!(struck > 2_000, "{struck}");
 }
+
+#[test]
+fn a_shell_meets_the_wall_and_the_roof_of_a_building_where_they_are_drawn() {
+    use glam::DVec2;
+    use terrain::features::index::{ObjectId, ObjectIndex};
+    use terrain::features::model::{Building, BuildingClass, Features, Origin};
+    let field = terrain::synthetic::from_fn(terrain::Grid::centred(200.0, 1, 1).unwrap(), |_, _| 300.0);
+    let area = terrain::Ground::new(std::sync::Arc::new(field)).whole();
+    // 12 m along x, 9 m along z, eaves at 306 m; its west wall is at x = 40.
+    let outline = [(40.0, 10.0), (40.0, 19.0), (52.0, 19.0), (52.0, 10.0)].map(|(x, z)| DVec2::new(x, z)).to_vec();
+    let building = Building { class: BuildingClass::House, outline, height_m: 6.0, height_from: Origin::Stated };
+    let features = Features { buildings: vec![building], ..Features::default() };
+    let objects = ObjectIndex::new(std::sync::Arc::new(features), &area);
+    let step_s = 1.0 / 120.0;
+    let flown = |from: DVec3, velocity: DVec3| {
+        let fall = DVec3::NEG_Y * 9.81;
+        let to_mps = velocity + fall * step_s;
+        let to_m = from + velocity * step_s + fall * (0.5 * step_s * step_s);
+        standing_impact(&StepPath { from_m: from, from_mps: velocity, to_m, to_mps, step_s }, &area, Some(&objects))
+    };
+    let wall = flown(DVec3::new(37.0, 303.0, 14.0), DVec3::new(800.0, -20.0, 5.0)).unwrap();
+    assert_eq!(wall.object, Some(ObjectId::Building(0)));
+    // Chords are followed to 1e-9 m.
+    assert!((wall.point_m.x - 40.0).abs() < 1e-9 && wall.normal == DVec3::NEG_X, "{wall:?}");
+    assert!((wall.time_s - 3.0 / 800.0).abs() < 1e-11);
+    // Straight down on the ridge, which no roof's pitch of 35 to 46 degrees has higher than 4.9 m over the eaves.
+    let roof = flown(DVec3::new(46.0, 312.0, 14.4), DVec3::new(0.0, -900.0, 0.0)).unwrap();
+    assert_eq!(roof.object, Some(ObjectId::Building(0)));
+    assert!(roof.point_m.y > 306.0 && roof.point_m.y < 311.0 && roof.normal.y > 0.5, "{roof:?}");
+    // Beside it, the ground.
+    let ground = flown(DVec3::new(30.0, 303.0, 14.0), DVec3::new(0.0, -900.0, 0.0)).unwrap();
+    assert_eq!((ground.object, ground.point_m.y), (None, 300.0));
+    assert_eq!(flown(DVec3::new(37.0, 330.0, 14.0), DVec3::new(800.0, 0.0, 0.0)), None);
+}

@@ -1,0 +1,99 @@
+//! From what happens in a simulated scene to the particles that show it: tracers, dust, explosions.
+//!
+//! Events stay in snapshots for half a second, a cloud of dust for longer: what began is remembered by its time, and shown
+//! as a function of the scene's time, so a pause holds it and a step back in time takes back what had not begun.
+
+use sim::Snapshot;
+use sim::scene::{Event, Happening};
+use visual::particles::{Emitter, EmitterKind};
+
+/// Longest that anything is remembered, scene seconds: an explosion's smoke.
+const KEPT_S: f64 = 9.0;
+/// Most emitters kept; the youngest are.
+const MOST_KEPT: usize = 512;
+/// Radius of a tracer's glow, metres.
+const TRACER_M: f32 = 0.08;
+/// Radius of the dust of a strike on the ground, and of the burst of one on a thing, metres.
+const DUST_M: f32 = 2.0;
+const BURST_M: f32 = 3.0;
+
+/// See the module.
+#[derive(Debug, Default)]
+pub struct Effects {
+    /// Events taken so far: the number of the next.
+    taken: u64,
+    kept: Vec<Emitter>,
+}
+
+impl Effects {
+    /// What a snapshot shows.
+    pub fn of(&mut self, snapshot: &Snapshot) -> Vec<Emitter> {
+        if snapshot.events_counted < self.taken {
+            *self = Self::default();
+        }
+        for event in snapshot.events.iter().filter(|event| event.number >= self.taken) {
+            self.kept.extend(begun(event));
+        }
+        self.taken = snapshot.events_counted;
+        let now_s = snapshot.time_s;
+        self.kept.retain(|one| one.born_s <= now_s + 1.0 && one.born_s >= now_s - KEPT_S);
+        let over = self.kept.len().saturating_sub(MOST_KEPT);
+        self.kept.drain(..over);
+        let tracers = snapshot.projectiles.iter().map(|shell| Emitter {
+            kind: EmitterKind::Tracer,
+            born_s: now_s,
+            position_m: shell.position_m,
+            velocity_mps: shell.velocity_mps,
+            size_m: TRACER_M,
+        });
+        self.kept.iter().copied().chain(tracers).collect()
+    }
+}
+
+fn begun(event: &Event) -> Option<Emitter> {
+    let (kind, position_m, size_m) = match &event.what {
+        Happening::Impact(strike) if strike.target.is_some() || strike.object.is_some() => {
+            (EmitterKind::Explosion, strike.point_m, BURST_M)
+        }
+        Happening::Impact(strike) => (EmitterKind::Dust, strike.point_m, DUST_M),
+        Happening::Crash { point_m, .. } => (EmitterKind::Explosion, *point_m, 3.0 * BURST_M),
+        _ => return None,
+    };
+    Some(Emitter { kind, born_s: event.time_s, position_m, velocity_mps: glam::DVec3::ZERO, size_m })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use sim::UtcTime;
+    use sim::aircraft::AircraftState;
+    use sim::scene::EndReason;
+    use sim::snapshot::StableId;
+
+    #[test]
+    fn a_crash_smokes_longer_than_its_event_is_told_and_a_new_scene_forgets_it() {
+        let scene = sim::Scene::new(AircraftState::level(DVec3::Y * 3e3, 0.0, 200.0), UtcTime { unix_ns: 0 });
+        let quiet = scene.snapshot();
+        let crash = Happening::Crash {
+            id: StableId(1),
+            reason: EndReason::Ground,
+            point_m: DVec3::X,
+            normal: DVec3::Y,
+            velocity_mps: DVec3::ZERO,
+        };
+        let mut struck = quiet.clone();
+        struck.events = vec![Event { number: 0, time_s: 0.0, what: crash }].into();
+        struck.events_counted = 1;
+        let mut effects = Effects::default();
+        assert!(effects.of(&quiet).is_empty());
+        assert_eq!(effects.of(&struck).len(), 1);
+        assert_eq!(effects.of(&struck).len(), 1, "an event is taken once");
+        let mut later = struck.clone();
+        (later.events, later.time_s) = (Vec::new().into(), 5.0);
+        assert_eq!(effects.of(&later)[0].kind, EmitterKind::Explosion);
+        later.time_s = 20.0;
+        assert!(effects.of(&later).is_empty());
+        assert!(effects.of(&quiet).is_empty());
+    }
+}
