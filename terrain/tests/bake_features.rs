@@ -182,6 +182,29 @@ fn the_default_world_has_airfields_on_planes() {
     // The right one of two lies to the right of the left one.
     let [left, right] = ["05L", "05R"].map(|name| almaty.runways.iter().find(|r| r.designators[0] == name).unwrap());
     assert!((left.ends[1] - left.ends[0]).perp_dot(right.ends[0] - left.ends[0]) > 0.0);
+    // The tapers add no slope above 1:8 but where mountains stand nearer than the widest taper: below one edge in a
+    // hundred.
+    let mut bare = default_request();
+    bare.features.truncate(1);
+    let bare = bake(&bare, &mut |_, _| ()).unwrap();
+    let columns = world.field.grid().columns() as usize;
+    let step_m = world.field.grid().step_m;
+    let (after, before) = (world.field.heights_m(), bare.field.heights_m());
+    let (mut changed, mut steep, mut steepest) = (0, 0, 0.0_f64);
+    for post in 0..after.len() - columns {
+        for beside in [post + 1, post + columns] {
+            if after[post] != before[post] || after[beside] != before[beside] {
+                let slope = |heights: &[f32]| f64::from((heights[post] - heights[beside]).abs()) / step_m;
+                changed += 1;
+                steep += usize::from(slope(after) > 0.1251 && slope(after) > slope(before));
+                steepest = steepest.max(slope(after));
+            }
+        }
+    }
+    println!(
+        "{changed} edges of the ground changed, {steep} of them steeper than 1:8 and than before, at most {steepest:.3}"
+    );
+    assert!(changed > 1_000 && steep * 100 < changed);
     for airfield in &world.features.airfields {
         println!("{} {} {:.1} m {:?}", airfield.code, airfield.name, airfield.level_m, airfield.runways);
     }
