@@ -144,8 +144,9 @@ pub struct BakeArgs {
     /// finest counts. `FILE@0.1` multiplies the file's heights, here decimetres, to make them metres.
     #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
     pub dem: Vec<PathBuf>,
-    /// GeoJSON files of lakes: polygons, with their `name` and `level_m` if known. A lake's ground is set to its level,
-    /// or to the middle height inside the outline.
+    /// Files of features: OpenStreetMap (.osm.pbf, .osm, .osm.gz), GeoJSON, shapefiles, tables of airfields (.csv), in a
+    /// gzip or not; told apart by content. A lake's ground is set to its level (`level_m`), or to the middle height inside
+    /// the outline; an airfield's to its elevation.
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub features: Vec<PathBuf>,
     /// Photographs. Not listed: this version reads none, and says so.

@@ -24,6 +24,12 @@ const JOIN_M: f64 = 3_000.0;
 /// Most that a stated elevation may be off the ground.
 const MOST_APART_M: f64 = 150.0;
 
+/// Farthest that a taxiway or an apron may reach from its airfield's point.
+const REACH_M: f64 = 8_000.0;
+
+/// Most airfields of a world: they are compared with each other and with all runways.
+const MAX_AIRFIELDS: usize = 2_000;
+
 /// Distance from a runway's middle to an assumed apron's near side: half the strip of a large runway (ICAO Annex 14,
 /// 3.4.3: 140 m) and a little.
 const APRON_OFF_M: f64 = 150.0;
@@ -77,12 +83,14 @@ pub fn set_airfields(
     }
     for taxiway in drawn.taxiways {
         match nearest(&mut candidates, |at| least_m(at, &taxiway.0)) {
+            Some(candidate) if !candidate.is_reached_by(&taxiway.0) => counts.skip(Kind::Taxiways, TOO_FAR),
             Some(candidate) => candidate.taxiways.push(taxiway),
             None => counts.skip(Kind::Taxiways, ALONE),
         }
     }
     for apron in drawn.aprons {
         match nearest(&mut candidates, |at| least_m(at, &apron)) {
+            Some(candidate) if !candidate.is_reached_by(&apron) => counts.skip(Kind::Aprons, TOO_FAR),
             Some(candidate) => candidate.aprons.push(apron),
             None => counts.skip(Kind::Aprons, ALONE),
         }
@@ -139,6 +147,15 @@ pub fn set_airfields(
 }
 
 const ALONE: &str = "no airfield within 3 km";
+const TOO_FAR: &str = "reaches more than 8 km from its airfield";
+const TOO_MANY: &str = "more than 2,000 airfields";
+
+impl Candidate {
+    /// Whether all of some lines is as near as an airfield's parts are.
+    fn is_reached_by(&self, lines: &[Vec<DVec2>]) -> bool {
+        lines.iter().flatten().all(|at| at.distance(self.at) <= REACH_M)
+    }
+}
 
 fn of_rows(rows: &[AirfieldRow], site: &Site<'_>, counts: &mut Counts) -> Vec<Candidate> {
     let grid = site.ground.grid();
@@ -156,6 +173,10 @@ fn of_rows(rows: &[AirfieldRow], site: &Site<'_>, counts: &mut Counts) -> Vec<Ca
             counts.skip(Kind::Airfields, "outside the world");
             continue;
         };
+        if candidates.len() >= MAX_AIRFIELDS {
+            counts.skip(Kind::Airfields, TOO_MANY);
+            continue;
+        }
         if candidates.iter().any(|other| other.at.distance(at) < 1.0) {
             counts.skip(Kind::Airfields, "at the place of another");
             continue;
@@ -186,6 +207,10 @@ fn of_aerodromes(aerodromes: &[Aerodrome], candidates: &mut Vec<Candidate>, coun
         if candidates[..table].iter().any(same) {
             counts.keep(Kind::Aerodromes);
             counts.note(Kind::Aerodromes, "in the table of airfields");
+            continue;
+        }
+        if candidates.len() >= MAX_AIRFIELDS {
+            counts.skip(Kind::Aerodromes, TOO_MANY);
             continue;
         }
         candidates.push(Candidate {

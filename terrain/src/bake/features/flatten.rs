@@ -233,11 +233,11 @@ mod tests {
         let lakes = Lakes::new(vec![crate::features::lakes::Lake { name: String::new(), level_m: 90.0, rings }]);
         let mut heights = vec![90.0_f32; grid.posts()];
         assert!(flatten(&[airfield(140.0)], &lakes, &grid, &mut heights).is_empty());
-        for post in 0..grid.posts() {
+        for (post, height_m) in heights.iter().enumerate() {
             let columns = grid.columns() as usize;
             let at = DVec2::new(grid.x_m((post % columns) as i64), grid.z_m((post / columns) as i64));
             if lakes.lake_at(at).is_some() {
-                assert_eq!(heights[post], 90.0, "{at}");
+                assert_eq!(*height_m, 90.0, "{at}");
             }
         }
         let mut heights = vec![f32::NAN; grid.posts()];

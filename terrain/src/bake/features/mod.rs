@@ -42,6 +42,9 @@ pub use waters::{OpenWater, set_lakes};
 /// Largest file, also unpacked.
 pub const MAX_BYTES: u64 = 1 << 30;
 
+/// Largest GeoJSON and largest table, also unpacked: parsed, text takes many times its size.
+const MAX_TEXT_BYTES: usize = 1 << 28;
+
 /// Most points of a GeoJSON file or a shapefile: the lakes of a continent.
 const MAX_POINTS: usize = 4_000_000;
 
@@ -88,7 +91,7 @@ pub fn read(bytes: &[u8], dbf: Option<&[u8]>, prj: Option<&str>) -> Result<Conte
 fn read_plain(bytes: &[u8], dbf: Option<&[u8]>, prj: Option<&str>) -> Result<Content, Unreadable> {
     let shapes = |features| Content { features, airfields: Vec::new() };
     if osm_pbf::looks_like(bytes) {
-        return Ok(shapes(osm_pbf::read(bytes)?.features()));
+        return osm_pbf::read(bytes)?.features().map(shapes);
     }
     if shapefile::looks_like(bytes) {
         return shapefile::read(bytes, dbf, prj).map(shapes);
@@ -96,13 +99,17 @@ fn read_plain(bytes: &[u8], dbf: Option<&[u8]>, prj: Option<&str>) -> Result<Con
     // A byte order mark and white space may stand before text.
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     if osm_xml::looks_like(text) {
-        return Ok(shapes(osm_xml::read(text)?.features()));
+        return osm_xml::read(text)?.features().map(shapes);
+    }
+    let table = airfield_csv::looks_like(text);
+    if (table || text.starts_with(b"{")) && text.len() > MAX_TEXT_BYTES {
+        return Err(Unreadable::new(format!("at most {MAX_TEXT_BYTES} bytes of text"), text.len().to_string()));
     }
     if text.starts_with(b"{") {
         let text = std::str::from_utf8(text).map_err(|e| Unreadable::new("GeoJSON", e.to_string()))?;
         return geojson::read(text).map(shapes);
     }
-    if airfield_csv::looks_like(text) {
+    if table {
         return Ok(Content { features: Vec::new(), airfields: airfield_csv::read(text)? });
     }
     Err(Unreadable::new(

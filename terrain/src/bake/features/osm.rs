@@ -20,6 +20,11 @@ const MAX_REFERENCES: usize = 1 << 26;
 /// Most ways, relations and tagged nodes.
 const MAX_ELEMENTS: usize = 1 << 22;
 
+/// Most bytes of tags.
+const MAX_TEXT: usize = 1 << 28;
+/// Most points of all areas of relations: several may name the same way.
+const MAX_AREA_POINTS: usize = 1 << 25;
+
 /// A way: its nodes are a range of all references.
 #[derive(Debug, Clone)]
 pub struct Way {
@@ -52,6 +57,7 @@ pub struct OsmData {
     references: Vec<i64>,
     relations: Vec<Relation>,
     members: usize,
+    text: usize,
 }
 
 impl OsmData {
@@ -67,9 +73,11 @@ impl OsmData {
         let at = [lon as i32, lat as i32];
         self.nodes.push((id, at));
         if !meanings(&tags, Element::Node).is_empty() {
+            self.text += tags.bytes();
             self.points.push((tags, at));
         }
         bounded(self.nodes.len(), MAX_NODES, "nodes")?;
+        bounded(self.text, MAX_TEXT, "bytes of tags")?;
         bounded(self.points.len(), MAX_ELEMENTS, "tagged nodes")
     }
 
@@ -84,6 +92,8 @@ impl OsmData {
         tagged: bool,
         nodes: impl Iterator<Item = i64>,
     ) -> Result<(), Unreadable> {
+        self.text += tags.bytes();
+        bounded(self.text, MAX_TEXT, "bytes of tags")?;
         let first = self.references.len();
         self.references.extend(nodes.take(MAX_REFERENCES + 1));
         self.ways.push(Way { id, tags, tagged, nodes: first..self.references.len() });
@@ -96,6 +106,8 @@ impl OsmData {
     /// # Errors
     /// There are too many.
     pub fn relation(&mut self, relation: Relation) -> Result<(), Unreadable> {
+        self.text += relation.tags.bytes();
+        bounded(self.text, MAX_TEXT, "bytes of tags")?;
         self.members += relation.ways.len();
         self.relations.push(relation);
         bounded(self.members, MAX_REFERENCES, "members of relations")?;
@@ -103,7 +115,10 @@ impl OsmData {
     }
 
     /// All its features: tagged nodes that mean something, tagged ways, tagged relations.
-    pub fn features(mut self) -> Vec<RawFeature> {
+    ///
+    /// # Errors
+    /// The areas of its relations have too many points.
+    pub fn features(mut self) -> Result<Vec<RawFeature>, Unreadable> {
         // Stable, so the first of a number counts.
         self.nodes.sort_by_key(|(id, _)| *id);
         self.ways.sort_by_key(|way| way.id);
@@ -114,11 +129,13 @@ impl OsmData {
             .iter()
             .map(|(tags, at)| RawFeature::new(tags.clone(), Element::Node, Shape::Point(degrees(*at))))
             .collect();
-        let mut whole = Vec::new();
+        let (mut whole, mut area_points) = (Vec::new(), 0);
         for relation in &self.relations {
             let polygon = relation.tags.is("type", "multipolygon").then(|| self.polygon(relation)).flatten();
             let kinds: Vec<Kind> =
                 meanings(&relation.tags, Element::Relation).into_iter().map(|(kind, _)| kind).collect();
+            area_points += polygon.as_ref().map_or(0, Polygon::points);
+            bounded(area_points, MAX_AREA_POINTS, "points of areas")?;
             match &polygon {
                 Some(polygon) if kinds.is_empty() => self.give_to_ways(relation, polygon, &mut areas),
                 Some(_) => {
@@ -145,7 +162,7 @@ impl OsmData {
             features.push(feature);
         }
         features.append(&mut whole);
-        features
+        Ok(features)
     }
 
     /// Before 2016 a multipolygon's tags stood on its outer ways. One that closes gets the holes inside it; of several

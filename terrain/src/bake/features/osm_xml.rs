@@ -131,7 +131,7 @@ mod tests {
             <relation id="5"><member type="way" ref="9" role="outer"/><member type="way" ref="8" role=""/>
             <tag k="type" v="multipolygon"/><tag k="natural" v="wood"/></relation></osm>"#;
         assert!(looks_like(text.as_bytes()));
-        let features = read(text.as_bytes()).unwrap().features();
+        let features = read(text.as_bytes()).unwrap().features().unwrap();
         let kinds: Vec<Element> = features.iter().map(|feature| feature.element).collect();
         assert_eq!(kinds, [Element::Node, Element::Way, Element::Relation]);
         let Shape::Lines(lines) = &features[1].shape else { panic!("{:?}", features[1]) };

@@ -22,6 +22,9 @@ const FAR_RAD: f64 = 0.5;
 /// Smallest building, square metres.
 const LEAST_BUILDING_M2: f64 = 1.0;
 
+/// Most runways: they are compared with each other.
+const MAX_RUNWAYS: usize = 10_000;
+
 const OUTSIDE: &str = "outside the world";
 
 /// Features on a world's plane; waters and aeroways still wait for the ground.
@@ -190,6 +193,9 @@ impl Placer<'_> {
                 let runway = DrawnRunway { ends, width_m, designators, surface, lit, features: 1 };
                 if !(50.0..=8_000.0).contains(&runway.length_m()) {
                     return Err("not 50 to 8,000 m long".into());
+                }
+                if self.placed.aeroways.runways.len() >= MAX_RUNWAYS {
+                    return Err("more than 10,000 runways".into());
                 }
                 self.placed.aeroways.runways.push(runway);
             }

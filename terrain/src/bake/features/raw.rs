@@ -130,6 +130,11 @@ impl Tags {
         self.0.iter().find(|(known, _)| *known == key).map(|(_, value)| value.as_str())
     }
 
+    /// Bytes of all values.
+    pub fn bytes(&self) -> usize {
+        self.0.iter().map(|(_, value)| value.len()).sum()
+    }
+
     /// Whether a key has that value.
     pub fn is(&self, key: &str, value: &str) -> bool {
         self.get(key) == Some(value)
@@ -150,6 +155,13 @@ impl RawFeature {
     /// A feature whose area, if any, is its own.
     pub fn new(tags: Tags, element: Element, shape: Shape) -> Self {
         Self { tags, element, shape, area: AreaOf::Itself, lake_by_default: false }
+    }
+}
+
+impl Polygon {
+    /// Points of all rings.
+    pub fn points(&self) -> usize {
+        self.outers.iter().chain(&self.inners).map(Vec::len).sum()
     }
 }
 
