@@ -1,5 +1,6 @@
 //! What lies on the ground.
 
+pub mod by_block;
 pub mod cover;
 pub mod cover_bake;
 pub mod cover_rules;
