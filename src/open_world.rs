@@ -56,6 +56,7 @@ pub fn landscape(world: &World, rings: &Rings) -> Arc<Landscape> {
         strips: StripsByBlock::new(world.field.grid(), &world.features),
         features: world.features.clone(),
         cover: world.cover.clone(),
+        imagery: world.imagery.clone(),
         climate: Climate::of(world.projection.centre(), world.info.statistics.mean_m),
         masks,
     })

@@ -2,8 +2,10 @@
 
 use super::error::BakeError;
 use super::extent::{extent, middle, written_deg};
+use super::imagery::imagery;
 use super::mosaic::{mosaic, pixel_m};
 use super::open;
+use super::photo;
 use super::raster::{Raster, Unreadable};
 use super::void_fill;
 use crate::features::cover_bake::{self, bake_cover};
@@ -53,6 +55,8 @@ pub struct BakeRequest {
     pub sources: Vec<(Input, f64)>,
     /// GeoJSON files of lakes.
     pub features: Vec<Input>,
+    /// Photographs of the ground.
+    pub imagery: Vec<PathBuf>,
     /// Distance between posts, metres, 25..=400.
     pub step_m: f64,
     /// The world's centre; the middle of the data if not given.
@@ -129,6 +133,11 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
     progress("reading", 1.0);
     let (projection, grid) = extent(&rasters, request.step_m, request.centre, request.size_km)?;
 
+    let mut photos = Vec::new();
+    for path in &request.imagery {
+        let failed = |problem| BakeError::Source { file: path.display().to_string(), problem };
+        photos.push(photo::open(path).map_err(failed)?);
+    }
     let mut sampled = mosaic(&grid, &projection, &rasters, &mut |done| progress("resampling", done));
     let inside = sampled.covered.iter().filter(|c| **c).count();
     if sampled.heights_m.iter().all(|h| h.is_nan()) {
@@ -168,6 +177,7 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
             FeatureCount { read: lakes_read, kept: lake_infos.len(), skipped: lakes_read - lake_infos.len() },
         )]),
         cover: None,
+        imagery: request.imagery.iter().zip(&photos).map(|(path, photo)| photo.described(&projection, path)).collect(),
         lakes: lake_infos,
         files: Vec::new(),
     };
@@ -180,7 +190,19 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
     let cover = Arc::new(bake_cover(&field, &lakes, &features, &climate));
     info.cover = cover_bake::described(&cover);
     progress("cover", 1.0);
-    let mut world = World { name, projection, field: Arc::new(field), lakes, features, cover, masks: Vec::new(), info };
+    let mut world = World {
+        name,
+        projection,
+        field: Arc::new(field),
+        lakes,
+        features,
+        cover,
+        imagery: None,
+        masks: Vec::new(),
+        info,
+    };
+    progress("imagery", 0.0);
+    world.imagery = imagery(&world, &climate, &photos).map(Arc::new);
     progress("masks", 0.0);
     world.make_ring_masks();
     Ok(world)

@@ -10,6 +10,7 @@
 use crate::features::by_block::{KINDS, Strip, StripKind, coverage};
 use crate::features::cover::{CLASSES, Cover, CoverClass, FROM_FEATURES};
 use crate::features::cover_rules::{Belts, Site, belts, sea_m, site_at, sites};
+use crate::features::imagery::Imagery;
 use crate::field::Field;
 use crate::grid::{BlockIndex, CELLS, Grid};
 pub use crate::noise::unit;
@@ -35,6 +36,8 @@ pub struct Dress<'a> {
     pub cover: &'a Cover,
     /// The block's strips.
     pub strips: &'a [Strip],
+    /// What photographs say of it.
+    pub imagery: Option<&'a Imagery>,
 }
 
 /// The ground map of a block. `shore_m` is the signed distance to the nearest water's edge at a world point (x, z),
@@ -53,6 +56,7 @@ pub fn ground_map(
     let sites = sites(field, block, climate);
     let (first_column, first_row) = (block.first_column(), block.first_row());
     let ramp_m = SHORE_RAMP_M * grid.step_m / 200.0;
+    let photo = dress.imagery.and_then(|imagery| imagery.texels(grid, block));
     let mut texels = Vec::with_capacity(BYTES);
     for row in 0..SIDE {
         for column in 0..SIDE {
@@ -66,11 +70,20 @@ pub fn ground_map(
             let shore = shore_m(x_m, z_m).min(sea_m(field, first_column, first_row, u, v));
             let mut albedo = albedo(site, climate, x_m, z_m, shore as f32);
             if shore >= 0.0 {
+                if let Some(imagery) = dress.imagery {
+                    let factors = imagery.factors(grid, x_m, z_m);
+                    albedo = std::array::from_fn(|c| albedo[c] * factors[c]);
+                }
                 if covered {
                     albedo = with_features(albedo, dress.cover, x_m, z_m, texel_m, shore);
                 }
                 for (kind, shares) in coverage.iter().filter(|(_, shares)| !shares.is_empty()) {
                     albedo = mix(albedo, strip_colour(*kind), shares[(row * SIDE + column) as usize]);
+                }
+                // A photograph has roads, fields and woods already.
+                if let Some(texel) = photo.as_ref().map(|photo| &photo[((row * SIDE + column) * 4) as usize..][..4]) {
+                    let seen = std::array::from_fn(|c| (f32::from(texel[c]) / 255.0).powi(2));
+                    albedo = mix(albedo, seen, f32::from(texel[3]) / 255.0);
                 }
             }
             texels.extend(albedo.map(|c| (c.clamp(0.0, 1.0).sqrt() * 255.0).round() as u8));
@@ -284,7 +297,7 @@ mod tests {
         let areas = vec![LandArea { cover: CoverClass::Snow, rings: vec![ring] }];
         let features = Features { areas, ..Features::default() };
         let cover = bake_cover(&field, &Lakes::default(), &features, &climate);
-        let dress = Dress { cover: &cover, strips: &[] };
+        let dress = Dress { cover: &cover, strips: &[], imagery: None };
         let map = ground_map(&field, BlockIndex { x: 1, z: 0 }, &climate, &dress, &|_, _| f64::INFINITY);
         let green = |column: usize, row: usize| map[(row * SIDE as usize + column) * 4 + 1];
         let mut between = 0;
@@ -305,7 +318,13 @@ mod tests {
         let strips = StripsByBlock::new(field.grid(), &features);
         let map = |x, z| {
             let block = BlockIndex { x, z };
-            ground_map(&field, block, &climate, &Dress { cover: &cover, strips: strips.of(block) }, &lake)
+            ground_map(
+                &field,
+                block,
+                &climate,
+                &Dress { cover: &cover, strips: strips.of(block), imagery: None },
+                &lake,
+            )
         };
         let (nw, ne, sw) = (map(0, 0), map(1, 0), map(0, 1));
         let texel = |map: &[u8], column: u32, row: u32| -> [u8; 4] {

@@ -10,6 +10,7 @@ use super::mesh::{self, Indices, TILE};
 use super::rings::{FAR_RINGS, RingMasks};
 use crate::features::by_block::StripsByBlock;
 use crate::features::cover::Cover;
+use crate::features::imagery::Imagery;
 use crate::features::lakes::Lakes;
 use crate::features::model::Features;
 use crate::field::Field;
@@ -35,6 +36,8 @@ pub struct Landscape {
     pub strips: StripsByBlock,
     /// What covers it.
     pub cover: Arc<Cover>,
+    /// What photographs say of it.
+    pub imagery: Option<Arc<Imagery>>,
     /// What the ground map's belts depend on.
     pub climate: Climate,
     /// Masks of every block and far ring.
@@ -130,6 +133,7 @@ impl Landscape {
             lakes: Arc::default(),
             features: Arc::default(),
             strips: StripsByBlock::default(),
+            imagery: None,
             cover: Arc::new(Cover::unknown(field.grid())),
             climate,
             ground: Ground::new(field),
@@ -167,7 +171,8 @@ impl Landscape {
         let (north_west, south_east) = (DVec2::new(west, north), DVec2::new(west + side, north + side));
         let water = self.lakes.near(north_west, south_east, SHORE_REACH_M);
         let shore_m = |x_m: f64, z_m: f64| water.signed_distance_m(DVec2::new(x_m, z_m));
-        let dress = ground_map::Dress { cover: &self.cover, strips: self.strips.of(block) };
+        let dress =
+            ground_map::Dress { cover: &self.cover, strips: self.strips.of(block), imagery: self.imagery.as_deref() };
         let ground_map = ground_map::ground_map(field, block, &self.climate, &dress, &shore_m);
         Payload {
             block,

@@ -28,8 +28,8 @@ fn the_texture_repeats_without_a_seam() {
 /// Twin of `detail_places` in `shaders/shared/detail.wgsl`, at a step of 200 m; posts counted over the world.
 fn places(post: [f32; 2]) -> [[f32; 2]; 2] {
     let [x, z] = post;
-    let wave = |u: f32, posts: f32, other: f32| (u / posts + (other / 17.9).sin()).sin();
-    let wave = [wave(z, 9.7, x), wave(x, 9.7, z), wave(x, 13.1, z), wave(z, 13.1, x)];
+    let wave = |u: f32, posts: f32, other: f32| (u / posts + (other / 5.1).sin()).sin();
+    let wave = [wave(z, 1.7, x), wave(x, 1.7, z), wave(x, 2.3, z), wave(z, 2.3, x)];
     let turned = |[a, b]: [f32; 2]| [(x * a + z * b) / 30.0, (-x * b + z * a) / 30.0];
     let coarse = turned([11.0, 4.0]);
     [[coarse[0] + 0.22 * (wave[0] + wave[2]), coarse[1] + 0.22 * (wave[1] + wave[3])], turned([89.0, -38.0])]
