@@ -11,6 +11,7 @@
 //!include "shared/display.wgsl"
 //!include "shared/posts.wgsl"
 //!include "shared/light.wgsl"
+//!include "shared/detail.wgsl"
 
 // Texels along a block's ground map.
 const MAP_SIDE: f32 = 64.0;
@@ -21,8 +22,6 @@ override DETAIL: u32 = 2u;
 override OVERLAY: u32 = 0u;
 
 @group(1) @binding(4) var ground_maps: texture_2d<f32>;
-@group(1) @binding(5) var detail_texture: texture_2d<f32>;
-@group(1) @binding(7) var detail_sampler: sampler;
 
 struct Surface {
     @builtin(position) @invariant clip: vec4<f32>,
@@ -32,6 +31,8 @@ struct Surface {
     @location(1) haze: vec4<f32>,
     // Slot's corner in the window, in blocks, and the level for the overlay.
     @location(2) @interpolate(flat) slot: vec3<f32>,
+    // Places in the detail texture: coarse scale, fine scale.
+    @location(5) detail: vec4<f32>,
 }
 
 struct WaterSurface {
@@ -42,6 +43,7 @@ struct WaterSurface {
     @location(3) relative_m: vec3<f32>,
     // Radiance of the sky mirrored in still water.
     @location(4) mirrored: vec3<f32>,
+    @location(5) detail: vec4<f32>,
 }
 
 @vertex
@@ -52,6 +54,7 @@ fn terrain_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) sl
     surface.local = vec3<f32>(vec2<f32>(post.local), map_level(post.relative_m));
     surface.haze = haze(post.relative_m);
     surface.slot = vec3<f32>(vec2<f32>(post.slot), post.level);
+    surface.detail = detail_places(slot, post.local);
     return surface;
 }
 
@@ -63,6 +66,7 @@ fn water_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) slot
     surface.local = vec3<f32>(vec2<f32>(post.local), map_level(post.relative_m));
     surface.haze = haze(post.relative_m);
     surface.slot = vec3<f32>(vec2<f32>(post.slot), post.level);
+    surface.detail = detail_places(slot, post.local);
     surface.relative_m = post.relative_m;
     let direction = normalize(post.relative_m);
     // Waves tilt the mirror, so even a grazing view sees sky a little above the horizon.
@@ -85,21 +89,11 @@ fn map_level(relative_m: vec3<f32>) -> f32 {
 fn terrain_fragment(surface: Surface) -> @location(0) vec4<f32> {
     let light = light_at(surface.local.xy, surface.slot.xy);
     let map = map_at(surface.local, surface.slot.xy);
-    var albedo = map.rgb * map.rgb;
-    var tilt = vec2<f32>(0.0);
+    var ground = Detail(map.rgb * map.rgb, vec2<f32>(0.0));
     if DETAIL > 0u {
-        // Whole repeats a block, so that borders match.
-        let near = textureSample(detail_texture, detail_sampler, surface.local.xy * (11.0 / f32(TILE - 2u)));
-        tilt = (near.rg - 0.5) * 0.30;
-        // Bright ground, such as snow, is the more even one.
-        albedo = albedo * (1.0 + (near.b - 0.5) * (0.8 - 0.7 * map.g));
-        if DETAIL > 1u {
-            let nearer = textureSample(detail_texture, detail_sampler, surface.local.yx * (97.0 / f32(TILE - 2u)));
-            tilt += (nearer.gr - 0.5) * 0.24;
-            albedo = albedo * (0.6 + 0.8 * nearer.a);
-        }
+        ground = detailed(map.rgb, surface.detail);
     }
-    let colour = overlaid(lit(albedo, light, tilt), surface.slot.z);
+    let colour = overlaid(lit(ground.albedo, light, ground.tilt), surface.slot.z);
     return shown(colour, surface.haze, surface.clip.xy);
 }
 
@@ -113,9 +107,9 @@ fn water_fragment(surface: WaterSurface) -> @location(0) vec4<f32> {
     // Without detail: no ripple, and ground as bright as its map.
     var near = vec4<f32>(0.5);
     if DETAIL > 0u {
-        near = textureSample(detail_texture, detail_sampler, ripple_at);
+        near = textureSample(detail_texture, detail_sampler, mix(surface.detail.xy, ripple_at, wet));
     }
-    let ground = lit(map.rgb * map.rgb * mix(0.55 + 0.9 * near.b, 1.0, wet), light, (near.rg - 0.5) * 0.3 * (1.0 - wet));
+    let ground = lit(map.rgb * map.rgb * mix(0.6 + 0.8 * near.b, 1.0, wet), light, (near.rg - 0.5) * 0.3 * (1.0 - wet));
 
     let distance_m = length(surface.relative_m);
     let to_eye = surface.relative_m * (-1.0 / distance_m);

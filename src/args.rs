@@ -149,8 +149,9 @@ pub struct BakeArgs {
     /// the outline; an airfield's to its elevation.
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub features: Vec<PathBuf>,
-    /// Photographs. Not listed: this version reads none, and says so.
-    #[arg(long, value_name = "FILE", num_args = 1.., hide = true)]
+    /// Photographs of the ground: GeoTIFF with red, green, blue, or PNG or JPEG with a world file in degrees. Where their
+    /// pixels are as fine as the ground map (some 140 m at a step of 200 m) they replace its colours, else they tint them.
+    #[arg(long, value_name = "FILE", num_args = 1..)]
     pub imagery: Vec<PathBuf>,
     /// Distance between posts, metres (25..=400).
     #[arg(long = "step", value_name = "M", value_parser = values::step_m, default_value = "200", allow_hyphen_values = true)]

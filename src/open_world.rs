@@ -8,6 +8,7 @@ use std::path::Path;
 use std::sync::Arc;
 use terrain::block::ground_map::Climate;
 use terrain::block::{Landscape, Rings};
+use terrain::features::by_block::StripsByBlock;
 use terrain::store::World;
 use terrain::{Ground, RingMasks};
 
@@ -52,8 +53,10 @@ pub fn landscape(world: &World, rings: &Rings) -> Arc<Landscape> {
     Arc::new(Landscape {
         ground: Ground::new(world.field.clone()),
         lakes: Arc::new(world.lakes.clone()),
+        strips: StripsByBlock::new(world.field.grid(), &world.features),
         features: world.features.clone(),
         cover: world.cover.clone(),
+        imagery: world.imagery.clone(),
         climate: Climate::of(world.projection.centre(), world.info.statistics.mean_m),
         masks,
     })

@@ -107,7 +107,7 @@ impl Look {
     pub fn preset(quality: Quality) -> Self {
         let (window, msaa, render_scale, detail, plants) = match quality {
             Quality::Fine => (24, 4, 1.0, 2, 1.0),
-            Quality::Standard => (24, 1, 1.0, 1, 1.0),
+            Quality::Standard => (24, 1, 1.0, 2, 1.0),
             Quality::Software => (12, 1, 0.67, 0, 0.4),
         };
         Self {

@@ -44,6 +44,7 @@ pub mod tests {
             name: "tiny".into(),
             sources: vec![(Input::Embedded(bytes), 1.0)],
             features: Vec::new(),
+            imagery: Vec::new(),
             step_m: 200.0,
             centre: None,
             size_km: Some([24.0, 24.0]),

@@ -19,9 +19,6 @@ use terrain::store::{FeatureCount, World};
 /// # Errors
 /// [`Failure`] says what was expected and what was found.
 pub fn run(args: &BakeArgs, output: Output) -> Result<(), Failure> {
-    if !args.imagery.is_empty() {
-        return Err(Failure::Misuse("this version bakes --dem and --features; it reads no --imagery".to_owned()));
-    }
     let name = world_name(&args.out)?;
     let failed = |error: &dyn std::fmt::Display| Failure::while_doing("baking", error);
     // Asked before the work, so that a mistyped --out does not cost it.
@@ -32,6 +29,7 @@ pub fn run(args: &BakeArgs, output: Output) -> Result<(), Failure> {
         name,
         sources: args.dem.iter().map(|path| source(path)).collect(),
         features: args.features.iter().cloned().map(Input::File).collect(),
+        imagery: args.imagery.clone(),
         step_m: args.step_m,
         centre: args.centre.map(|centre| Geodetic::from_degrees(centre.lat_deg, centre.lon_deg)),
         size_km: args.size_km.map(|size| [size.width_km, size.height_km]),

@@ -235,6 +235,7 @@ fn lakes_and_worlds() {
         name: "fuzz".into(),
         sources: vec![(Input::File(tif), 1.0)],
         features: vec![Input::File(lakes.clone())],
+        imagery: Vec::new(),
         step_m: 400.0,
         centre: None,
         size_km: None,

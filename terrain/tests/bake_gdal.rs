@@ -32,6 +32,7 @@ fn baked(file: &Path, step_m: f64) -> World {
         name: "compared".into(),
         sources: vec![(Input::File(file.into()), 1.0)],
         features: Vec::new(),
+        imagery: Vec::new(),
         step_m,
         centre: None,
         size_km: None,

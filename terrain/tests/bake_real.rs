@@ -23,6 +23,7 @@ fn request(sources: &[&Path], step_m: f64) -> BakeRequest {
         name: "test".into(),
         sources: sources.iter().map(|path| (Input::File((*path).into()), 1.0)).collect(),
         features: Vec::new(),
+        imagery: Vec::new(),
         step_m,
         centre: None,
         size_km: None,

@@ -77,3 +77,112 @@ fn a_world_keeps_its_cover() {
     assert!(read.cover == world.cover && read.info.cover == world.info.cover);
     assert_eq!(read.cover.cell_m(), 50.0);
 }
+
+/// Bakes the middle of the default world with a photograph.
+fn with_imagery(pictures: &[std::path::PathBuf]) -> World {
+    let mut request = default_request();
+    request.size_km = Some([60.0, 60.0]);
+    request.imagery = pictures.to_vec();
+    bake(&request, &mut |_, _| ()).unwrap()
+}
+
+/// Mean colour of the land in the middle blocks' ground maps, and the mean step between neighbouring texels.
+fn looks(world: &World) -> ([f64; 3], f64) {
+    let grid = world.field.grid();
+    let climate = terrain::block::ground_map::Climate::of(world.projection.centre(), world.info.statistics.mean_m);
+    let (mut sum, mut number, mut steps) = ([0.0; 3], 0.0, 0.0);
+    for block in grid.blocks() {
+        let dress =
+            terrain::block::ground_map::Dress { cover: &world.cover, strips: &[], imagery: world.imagery.as_deref() };
+        let map = terrain::block::ground_map::ground_map(&world.field, block, &climate, &dress, &|_, _| f64::INFINITY);
+        let texels: Vec<&[u8]> = map[..terrain::block::ground_map::MAP_BYTES].chunks_exact(4).collect();
+        for pair in texels.windows(2) {
+            for channel in 0..3 {
+                sum[channel] += (f64::from(pair[0][channel]) / 255.0).powi(2);
+            }
+            steps += f64::from(pair[0][1].abs_diff(pair[1][1]));
+            number += 1.0;
+        }
+    }
+    (sum.map(|c| c / number), steps / number)
+}
+
+#[test]
+fn a_coarse_photograph_tints_and_keeps_the_detail() {
+    let picture = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../shared/data/terrain/committable/imagery/bluemarble_240s_kyrgyzstan.png");
+    if !picture.is_file() {
+        println!("skipped: {} is not there", picture.display());
+        return;
+    }
+    let (plain, tinted) = (with_imagery(&[]), with_imagery(&[picture]));
+    assert!(plain.imagery.is_none() && tinted.imagery.is_some());
+    assert!((4_000.0..9_000.0).contains(&tinted.info.imagery[0].pixel_m[0]));
+    let ((before, detail), (after, kept)) = (looks(&plain), looks(&tinted));
+    println!("{before:?} {detail} becomes {after:?} {kept}");
+    assert_ne!(before, after);
+    // Detail is in proportion to the square root of the brightness that it lies on.
+    let expected = detail * (after[1] / before[1]).sqrt();
+    assert!((kept / expected - 1.0).abs() < 0.3, "{kept} and {expected}");
+    let folder = std::env::temp_dir().join(format!("poligon-imagery-{}.world", std::process::id()));
+    tinted.write(&folder).unwrap();
+    let read = World::read(&folder).unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!(read.imagery == tinted.imagery);
+}
+
+#[test]
+fn a_fine_photograph_replaces() {
+    let folder =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/terrain/tests/dem/craterlake");
+    let elevation = folder.join("craterlake-elev-16bit-30m.tif");
+    if !elevation.is_file() {
+        println!("skipped: {} is not there", elevation.display());
+        return;
+    }
+    let request = terrain::bake::BakeRequest {
+        name: "Crater Lake".into(),
+        sources: vec![(terrain::bake::Input::File(elevation), 1.0)],
+        features: Vec::new(),
+        imagery: vec![folder.join("craterlake-imagery-30m.tif")],
+        step_m: 50.0,
+        centre: None,
+        size_km: None,
+    };
+    let world = bake(&request, &mut |_, _| ()).unwrap();
+    println!("{:#?}", world.info.imagery);
+    let imagery = world.imagery.as_ref().unwrap();
+    let grid = world.field.grid();
+    let photo = terrain::bake::photo::open(&request.imagery[0]).unwrap();
+    let inverse = photo.place.inverse();
+    let (mut seen, mut number, mut difference) = (0, 0, 0.0);
+    for block in grid.blocks() {
+        let Some(texels) = imagery.texels(grid, block) else { continue };
+        for (at, texel) in texels.chunks_exact(4).enumerate().filter(|(_, texel)| texel[3] == 255) {
+            let part = |i: usize| i as f64 * grid.block_m() / 63.0;
+            let x_m = grid.x_m(block.first_column()) + part(at % 64);
+            let z_m = grid.z_m(block.first_row()) + part(at / 64);
+            let pixel = photo.place.pixel(&inverse, world.projection.to_geodetic((x_m, z_m).into()));
+            let (column, row) = (pixel.x as usize, pixel.y as usize);
+            let green = f64::from(photo.pixels[row * photo.place.columns + column][1]) / 255.0;
+            // The square root of linear light is close to the sRGB code itself.
+            difference += (f64::from(texel[1]) / 255.0 - green).abs();
+            number += 1;
+            seen += usize::from(column < photo.place.columns);
+        }
+    }
+    println!("{seen} texels, mean difference {:.4}", difference / f64::from(number));
+    assert!(number > 20_000);
+    // Codes and roots differ by at most 0.04; texels mean over pixels of a picture with edges.
+    assert!(difference / f64::from(number) < 0.06);
+}
+
+#[test]
+fn what_is_no_photograph_is_said() {
+    use terrain::bake::photo::read;
+    let said = |bytes: &[u8], world_file: Option<&str>| read(bytes, world_file).unwrap_err().to_string();
+    assert!(said(b"hello", None).contains("expected GeoTIFF of red, green, blue"));
+    assert!(said(b"\x89PNG\r\n\x1a\n", None).contains("a world file"));
+    assert!(said(&[0xff, 0xd8, 0xff, 0xe0], Some("1 0 0 -1 10 50")).contains("undamaged JPEG"));
+    assert!(said(b"II*\0\x08\0\0\0", None).contains("TIFF"));
+}

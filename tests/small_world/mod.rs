@@ -21,6 +21,7 @@ pub fn write(test: &str) -> PathBuf {
     };
     let mut world = World {
         features: Default::default(),
+        imagery: None,
         cover: Arc::new(Cover::unknown(&grid)),
         name: "Ridges".into(),
         projection: Projection::new(Geodetic::from_degrees(lat_deg, lon_deg)).expect("a projection"),
@@ -44,6 +45,7 @@ pub fn write(test: &str) -> PathBuf {
             voids: Voids { posts: 0, share: 0.0, largest_posts: 0, beyond_posts: 0 },
             sources: Vec::new(),
             cover: None,
+            imagery: Vec::new(),
             lakes: Vec::new(),
             features: std::collections::BTreeMap::new(),
             files: Vec::new(),

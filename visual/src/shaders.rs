@@ -19,6 +19,7 @@ pub const SOURCES: &[(&str, &str)] = &[
 
 /// Every file that may be included.
 pub const SHARED: &[(&str, &str)] = &[
+    ("shared/detail.wgsl", include_str!("../../shaders/shared/detail.wgsl")),
     ("shared/display.wgsl", include_str!("../../shaders/shared/display.wgsl")),
     ("shared/frame.wgsl", include_str!("../../shaders/shared/frame.wgsl")),
     ("shared/light.wgsl", include_str!("../../shaders/shared/light.wgsl")),

@@ -3,8 +3,10 @@
 use super::error::BakeError;
 use super::extent::{extent, middle, written_deg};
 use super::features::{self, AirfieldRow, Content, Placed, Site};
+use super::imagery::imagery;
 use super::mosaic::{mosaic, pixel_m};
 use super::open;
+use super::photo;
 use super::raster::{Raster, Unreadable};
 use super::void_fill;
 use crate::features::cover_bake::{self, bake_cover};
@@ -50,6 +52,8 @@ pub struct BakeRequest {
     pub sources: Vec<(Input, f64)>,
     /// Files of features: OSM PBF and XML, GeoJSON, shapefiles, tables of airfields.
     pub features: Vec<Input>,
+    /// Photographs of the ground.
+    pub imagery: Vec<PathBuf>,
     /// Distance between posts, metres, 25..=400.
     pub step_m: f64,
     /// The world's centre; the middle of the data if not given.
@@ -110,6 +114,11 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
     progress("reading", 1.0);
     let (projection, grid) = extent(&rasters, request.step_m, request.centre, request.size_km)?;
 
+    let mut photos = Vec::new();
+    for path in &request.imagery {
+        let failed = |problem| BakeError::Source { file: path.display().to_string(), problem };
+        photos.push(photo::open(path).map_err(failed)?);
+    }
     let mut sampled = mosaic(&grid, &projection, &rasters, &mut |done| progress("resampling", done));
     let inside = sampled.covered.iter().filter(|c| **c).count();
     if sampled.heights_m.iter().all(|h| h.is_nan()) {
@@ -160,6 +169,7 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
         sources: described(request, &projection, &rasters),
         features: placed.counts.described(),
         cover: None,
+        imagery: request.imagery.iter().zip(&photos).map(|(path, photo)| photo.described(&projection, path)).collect(),
         lakes: lake_infos,
         files: Vec::new(),
     };
@@ -172,7 +182,19 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
     let cover = Arc::new(bake_cover(&field, &lakes, &features, &climate));
     info.cover = cover_bake::described(&cover);
     progress("cover", 1.0);
-    let mut world = World { name, projection, field, lakes, features, cover, masks: Vec::new(), info };
+    let mut world = World {
+        name,
+        projection,
+        field,
+        lakes,
+        features,
+        cover,
+        imagery: None,
+        masks: Vec::new(),
+        info,
+    };
+    progress("imagery", 0.0);
+    world.imagery = imagery(&world, &climate, &photos).map(Arc::new);
     progress("masks", 0.0);
     world.make_ring_masks();
     Ok(world)

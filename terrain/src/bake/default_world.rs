@@ -68,6 +68,7 @@ pub fn default_request() -> BakeRequest {
         name: "Issyk-Kul".into(),
         sources: vec![(Input::Embedded(ELEVATION), 1.0)],
         features: vec![Input::Embedded(LAKES), Input::Embedded(AIRFIELDS)],
+        imagery: Vec::new(),
         step_m: 200.0,
         centre: Some(Geodetic::from_degrees(42.425, 78.35)),
         size_km: Some([400.0, 400.0]),

@@ -10,6 +10,7 @@
 //! Source: OGC 19-008r4, GeoTIFF Standard 1.1, 2019.
 
 use super::crs::{Crs, DATUM_WGS84, Datum, geographic_datum};
+use super::photo::Photo;
 use super::raster::{Affine, MAX_SAMPLES, Raster, Unreadable};
 use crate::projection::{Geodetic, TransverseMercator};
 use glam::DVec2;
@@ -55,6 +56,50 @@ pub fn read(bytes: &[u8]) -> Result<Raster, Unreadable> {
     let mut raster = Raster::new((columns as usize, rows as usize), samples, affine, crs, "GeoTIFF")?;
     raster.credit = credit(&mut decoder);
     Ok(raster)
+}
+
+/// Reads red, green, blue and perhaps alpha of 8 bits.
+///
+/// # Errors
+/// [`Unreadable`] says what in the file is not as it must be.
+pub fn read_photo(bytes: &[u8]) -> Result<Photo, Unreadable> {
+    let damaged = |e: tiff::TiffError| Unreadable::new("an undamaged TIFF", e.to_string());
+    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(damaged)?;
+    let (columns, rows) = decoder.dimensions().map_err(damaged)?;
+    let bits = first_u32(&mut decoder, Tag::BitsPerSample)?.unwrap_or(1);
+    let bands = first_u32(&mut decoder, Tag::SamplesPerPixel)?.unwrap_or(1).max(1);
+    let planar = first_u32(&mut decoder, Tag::PlanarConfiguration)? == Some(2);
+    if bits != 8 || !(3..=4).contains(&bands) || planar {
+        return Err(Unreadable::new(
+            "red, green, blue and perhaps alpha of 8 bits, pixel by pixel",
+            format!("{bands} bands of {bits} bits{}", if planar { ", band by band" } else { "" }),
+        ));
+    }
+    let image_bytes = check_size(bytes.len(), columns, rows, bands, bits)?;
+    let most = usize::try_from(image_bytes).unwrap_or(usize::MAX).saturating_add(1 << 24);
+    let mut limits = Limits::default();
+    limits.decoding_buffer_size = most;
+    limits.intermediate_buffer_size = most;
+    limits.ifd_value_size = bytes.len().min(1 << 27);
+    decoder = decoder.with_limits(limits);
+    let keys = GeoKeys::read(&mut decoder)?;
+    let place = Raster {
+        columns: columns as usize,
+        rows: rows as usize,
+        samples_m: Vec::new(),
+        affine: georeference(&mut decoder, keys.pixel_is_point())?,
+        crs: keys.crs()?,
+        format: "GeoTIFF",
+        credit: credit(&mut decoder),
+    };
+    let pixels = match decoder.read_image().map_err(damaged)? {
+        DecodingResult::U8(samples) => {
+            let alpha = |pixel: &[u8]| pixel.get(3).copied().unwrap_or(255);
+            samples.chunks_exact(bands as usize).map(|p| [p[0], p[1], p[2], alpha(p)]).collect()
+        }
+        _ => return Err(Unreadable::new("colours of 8 bits", "others")),
+    };
+    Photo::new(place, pixels)
 }
 
 /// Bytes of the whole image, if so many can be in a file of that length.

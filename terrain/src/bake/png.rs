@@ -42,7 +42,7 @@ pub fn read(bytes: &[u8], world_file: Option<&str>) -> Result<Raster, Unreadable
     Raster::new((columns as usize, rows as usize), samples, affine, Crs::Geographic(DATUM_WGS84), "PNG")
 }
 
-fn parse_world_file(text: &str) -> Result<Affine, Unreadable> {
+pub(super) fn parse_world_file(text: &str) -> Result<Affine, Unreadable> {
     let numbers: Vec<f64> = text.split_whitespace().take(7).map_while(|t| t.parse().ok()).collect();
     let [a, d, b, e, c, f] = numbers[..] else {
         return Err(Unreadable::new("six numbers in the world file", format!("{}", numbers.len())));

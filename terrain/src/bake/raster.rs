@@ -94,7 +94,7 @@ impl Raster {
         raster.checked()
     }
 
-    fn checked(self) -> Result<Self, Unreadable> {
+    pub(super) fn checked(self) -> Result<Self, Unreadable> {
         let Affine { origin, right, down } = self.affine;
         let area = right.perp_dot(down);
         if !(origin.is_finite() && right.is_finite() && down.is_finite() && area.is_finite() && area != 0.0) {

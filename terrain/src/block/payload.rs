@@ -8,7 +8,9 @@ use super::light;
 use super::mask::{BlockPosts, Mask, block_posts};
 use super::mesh::{self, Indices, TILE};
 use super::rings::{FAR_RINGS, RingMasks};
+use crate::features::by_block::StripsByBlock;
 use crate::features::cover::Cover;
+use crate::features::imagery::Imagery;
 use crate::features::lakes::Lakes;
 use crate::features::model::Features;
 use crate::field::Field;
@@ -30,8 +32,12 @@ pub struct Landscape {
     pub lakes: Arc<Lakes>,
     /// What else lies on the ground.
     pub features: Arc<Features>,
+    /// Its roads, running water and runways by block: [`StripsByBlock::new`] of the features.
+    pub strips: StripsByBlock,
     /// What covers it.
     pub cover: Arc<Cover>,
+    /// What photographs say of it.
+    pub imagery: Option<Arc<Imagery>>,
     /// What the ground map's belts depend on.
     pub climate: Climate,
     /// Masks of every block and far ring.
@@ -126,6 +132,8 @@ impl Landscape {
             masks: RingMasks::new(&field, limits_m),
             lakes: Arc::default(),
             features: Arc::default(),
+            strips: StripsByBlock::default(),
+            imagery: None,
             cover: Arc::new(Cover::unknown(field.grid())),
             climate,
             ground: Ground::new(field),
@@ -163,7 +171,9 @@ impl Landscape {
         let (north_west, south_east) = (DVec2::new(west, north), DVec2::new(west + side, north + side));
         let water = self.lakes.near(north_west, south_east, SHORE_REACH_M);
         let shore_m = |x_m: f64, z_m: f64| water.signed_distance_m(DVec2::new(x_m, z_m));
-        let ground_map = ground_map::ground_map(field, block, &self.climate, &shore_m);
+        let dress =
+            ground_map::Dress { cover: &self.cover, strips: self.strips.of(block), imagery: self.imagery.as_deref() };
+        let ground_map = ground_map::ground_map(field, block, &self.climate, &dress, &shore_m);
         Payload {
             block,
             version: 0,

@@ -275,7 +275,7 @@ impl Belts {
     }
 
     /// Broadleaved low, conifers high; in dry lands only these, since what rain there is falls high up.
-    fn trees(&self, climate: &Climate) -> CoverClass {
+    pub fn trees(&self, climate: &Climate) -> CoverClass {
         let cold = self.relative + 0.16 * (self.broad - 0.5) + 0.5 * climate.boreal;
         if climate.dryness > 0.5 || cold > 0.42 {
             CoverClass::Conifer

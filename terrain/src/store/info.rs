@@ -45,6 +45,9 @@ pub struct WorldInfo {
     /// What covers the ground.
     #[serde(default)]
     pub cover: Option<CoverInfo>,
+    /// Photographs of the ground.
+    #[serde(default)]
+    pub imagery: Vec<ImageryInfo>,
     /// Lakes set to one level.
     #[serde(default)]
     pub lakes: Vec<LakeInfo>,
@@ -143,6 +146,25 @@ pub struct CoverInfo {
     pub from_features: f64,
     /// Share of the known cells by class.
     pub shares: BTreeMap<String, f64>,
+}
+
+/// A photograph of the ground.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ImageryInfo {
+    /// File name.
+    pub file: String,
+    /// Format.
+    pub format: String,
+    /// Coordinate system.
+    pub system: String,
+    /// Pixels along a row.
+    pub columns: usize,
+    /// Rows.
+    pub rows: usize,
+    /// Size of a pixel along rows and columns.
+    pub pixel_m: [f64; 2],
+    /// Who must be credited; empty if the file does not say.
+    pub credit: String,
 }
 
 /// A lake.

@@ -19,11 +19,13 @@ mod masks;
 
 pub use folder::StoreError;
 pub use info::{
-    CoverInfo, Extent, FORMAT_VERSION, FeatureCount, FileInfo, LakeInfo, Source, Statistics, Voids, WorldInfo,
+    CoverInfo, Extent, FORMAT_VERSION, FeatureCount, FileInfo, ImageryInfo, LakeInfo, Source, Statistics, Voids,
+    WorldInfo,
 };
 
 use crate::block::rings::{RingMasks, Rings};
 use crate::features::cover::Cover;
+use crate::features::imagery::Imagery;
 use crate::features::lakes::{Lake, Lakes};
 use crate::features::model::Features;
 use crate::field::Field;
@@ -40,9 +42,11 @@ const LAKES: &str = "lakes.json";
 const MASKS: &str = "masks.bin";
 const FEATURES: &str = "features.bin";
 const COVER: &str = "cover.bin";
+/// Postcard of [`Imagery`].
+const IMAGERY: &str = "imagery.bin";
 
 /// All that a world's folder may hold.
-const FILES: [&str; 6] = [folder::INFO, HEIGHTS, LAKES, MASKS, FEATURES, COVER];
+const FILES: [&str; 7] = [folder::INFO, HEIGHTS, LAKES, MASKS, FEATURES, COVER, IMAGERY];
 
 /// A world in memory.
 #[derive(Debug, Clone)]
@@ -59,6 +63,8 @@ pub struct World {
     pub features: Arc<Features>,
     /// What covers its ground.
     pub cover: Arc<Cover>,
+    /// What photographs say of its ground, if there are any.
+    pub imagery: Option<Arc<Imagery>>,
     /// The masks of its blocks, packed by [`crate::block`]; empty if none were made.
     pub masks: Vec<u8>,
     /// What `world.toml` says of it.
@@ -125,8 +131,22 @@ impl World {
                 .map_err(|found| StoreError::damaged(&path.join(COVER), "a cover of the world's size", found))?,
             None => Cover::unknown(&grid),
         };
+        let imagery = match info.file(IMAGERY) {
+            Some(_) => {
+                let damaged =
+                    |found: String| StoreError::damaged(&path.join(IMAGERY), "imagery of the world's size", found);
+                let imagery: Imagery = postcard::from_bytes(&read_checked(path, &info, IMAGERY, None)?)
+                    .map_err(|error| damaged(error.to_string()))?;
+                if !imagery.fits(&grid) {
+                    return Err(damaged("another size".into()));
+                }
+                Some(Arc::new(imagery))
+            }
+            None => None,
+        };
         Ok(Self {
             name: info.name.clone(),
+            imagery,
             features: Arc::new(features),
             cover: Arc::new(cover),
             projection,
@@ -173,6 +193,11 @@ impl World {
         }
         if !self.cover.cells().is_empty() {
             files.push((COVER, &cover));
+        }
+        let imagery = self.imagery.as_deref().map(postcard::to_stdvec).transpose();
+        let imagery = imagery.map_err(|e| StoreError::io(path, std::io::Error::other(e)))?;
+        if let Some(imagery) = &imagery {
+            files.push((IMAGERY, imagery));
         }
         if !self.masks.is_empty() {
             files.push((MASKS, &self.masks));

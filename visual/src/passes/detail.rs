@@ -1,32 +1,33 @@
-//! The detail texture: tiling noise that breaks up the ground near the eye.
+//! The detail texture: tiling patterns that the ground near the eye is made of, whatever covers it.
 //!
-//! No feature is longer than a twelfth of the texture, or its repetition would show from the air. RGBA8: red and
-//! green a surface slope (0.5 is level), blue and alpha two shades (mean 0.5). Every mip is the mean
-//! of the one below, a little fainter, so with distance the slope fades to level and the shades to grey: no shimmer, no fade to tune.
+//! RGBA8, mean 0.5 in every channel: red and green the slope of a relief of knolls and edges; blue *clumps*: tussocks,
+//! bushes, patches; alpha *grain*: cracks between stones and fine grit. The shader (`shaders/shared/detail.wgsl`) reads
+//! it at two scales and weighs the channels by the colour of the ground map: rock shows relief and cracks, grass and
+//! steppe clumps, sand grit, snow little of anything.
+//!
+//! No feature is longer than a twelfth of the texture, or its repetition would show from the air; what repetition is
+//! left is bent apart by the shader (`detail_places` there, and its twin in the test). Every mip is the mean of the one below, a
+//! little fainter, so with distance the slope fades to level and the patterns to grey: no shimmer, no fade to tune.
 
+use std::sync::OnceLock;
 use terrain::block::ground_map::unit;
 
-/// Contrast that a mip keeps of the one below it beyond plain averaging: what is far enough to show the repetition is
-/// faded out before it does.
-const KEPT: f32 = 0.7;
+/// Texels along the texture.
+pub const SIDE: u32 = 512;
 
-/// The texture and all its mips, each a square of four-byte texels; `side` a power of two.
-pub fn mip_chain(side: u32) -> Vec<Vec<u8>> {
+/// Contrast that a mip keeps of the one below it beyond plain averaging.
+const KEPT: f32 = 0.88;
+
+/// The texture and all its mips, each a square of four-byte texels. Made once a process.
+pub fn levels() -> &'static [Vec<u8>] {
+    static LEVELS: OnceLock<Vec<Vec<u8>>> = OnceLock::new();
+    LEVELS.get_or_init(|| mip_chain(SIDE))
+}
+
+/// The texture and all its mips; `side` a power of two.
+fn mip_chain(side: u32) -> Vec<Vec<u8>> {
     let size = side as usize;
-    let relief: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 12, 4, 11)).collect();
-    let shade: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 14, 4, 23)).collect();
-    let grain: Vec<f32> = (0..size * size).map(|at| fractal(at % size, at / size, size, 18, 4, 47)).collect();
-    let mut texels: Vec<[f32; 4]> = (0..size * size)
-        .map(|at| {
-            let (x, y) = (at % size, at / size);
-            let slope = |dx: usize, dy: usize| {
-                let ahead = relief[(y + dy) % size * size + (x + dx) % size];
-                let behind = relief[(y + size - dy) % size * size + (x + size - dx) % size];
-                0.5 + 3.0 * (behind - ahead)
-            };
-            [slope(1, 0), slope(0, 1), shade[at], grain[at]]
-        })
-        .collect();
+    let mut texels = patterns(size);
     let mut level_side = size;
     let mut levels = Vec::new();
     loop {
@@ -49,26 +50,60 @@ pub fn mip_chain(side: u32) -> Vec<Vec<u8>> {
     }
 }
 
-/// Value noise that repeats after `size` texels: octaves from `cells` lattice cells up, mean 0.5.
-fn fractal(x: usize, y: usize, size: usize, cells: usize, octaves: u32, seed: u32) -> f32 {
+/// The texels of the whole texture.
+fn patterns(size: usize) -> Vec<[f32; 4]> {
+    let relief = channel(size, |x, y| {
+        let knolls = fractal(x, y, 12, 5, 11);
+        // Edges where two knolls meet: a fold of the noise.
+        let folds = 1.0 - (2.0 * fractal(x, y, 20, 4, 29) - 1.0).abs();
+        0.55 * knolls + 0.45 * folds
+    });
+    let clumps = channel(size, |x, y| {
+        let (patch, tuft, blade) = (fractal(x, y, 12, 3, 23), cells(x, y, 29, 31)[0], cells(x, y, 71, 37)[0]);
+        patch - 0.45 * tuft - 0.35 * blade
+    });
+    let grain = channel(size, |x, y| {
+        let [near, next] = cells(x, y, 23, 41);
+        let [small, smaller] = cells(x, y, 61, 43);
+        // Thin dark joints between stones of two sizes, and grit.
+        let joint = |gap: f32, width: f32| (gap / width).min(1.0);
+        0.16 * joint(next - near, 0.30) + 0.22 * joint(smaller - small, 0.45) + 1.2 * fractal(x, y, 24, 4, 47)
+    });
+    let (relief, clumps, grain) = (spread(relief, 0.2), spread(clumps, 0.17), spread(grain, 0.16));
+    let slope = |x: usize, y: usize, dx: usize, dy: usize| {
+        let ahead = relief[(y + dy) % size * size + (x + dx) % size];
+        let behind = relief[(y + size - dy) % size * size + (x + size - dx) % size];
+        behind - ahead
+    };
+    let slopes = |dx, dy| spread((0..size * size).map(|at| slope(at % size, at / size, dx, dy)).collect(), 0.14);
+    let (east, south) = (slopes(1, 0), slopes(0, 1));
+    (0..size * size).map(|at| [east[at], south[at], clumps[at], grain[at]]).collect()
+}
+
+/// A pattern over the texture's texels, coordinates 0..1.
+fn channel(size: usize, at: impl Fn(f32, f32) -> f32) -> Vec<f32> {
+    (0..size * size).map(|i| at((i % size) as f32 / size as f32, (i / size) as f32 / size as f32)).collect()
+}
+
+/// The same pattern with mean 0.5 and a standard deviation of `deviation`.
+fn spread(values: Vec<f32>, deviation: f32) -> Vec<f32> {
+    let number = values.len() as f64;
+    let mean = values.iter().map(|v| f64::from(*v)).sum::<f64>() / number;
+    let variance = values.iter().map(|v| (f64::from(*v) - mean).powi(2)).sum::<f64>() / number;
+    let gain = f64::from(deviation) / variance.sqrt().max(1e-9);
+    values.into_iter().map(|v| (0.5 + (f64::from(v) - mean) * gain) as f32).collect()
+}
+
+/// Value noise that repeats after 1: octaves from `cells` lattice cells up, 0 to 1.
+fn fractal(x: f32, y: f32, cells: usize, octaves: u32, seed: u32) -> f32 {
     let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
     for octave in 0..octaves {
         let cells = cells << octave;
-        if cells > size {
-            break;
-        }
-        sum += weight
-            * lattice(
-                x as f32 * cells as f32 / size as f32,
-                y as f32 * cells as f32 / size as f32,
-                cells,
-                seed + octave,
-            );
+        sum += weight * lattice(x * cells as f32, y * cells as f32, cells, seed + octave);
         total += weight;
         weight *= 0.6;
     }
-    // Sums of noises huddle around the mean; spread them again.
-    0.5 + 1.7 * (sum / total - 0.5)
+    sum / total
 }
 
 fn lattice(x: f32, y: f32, cells: usize, seed: u32) -> f32 {
@@ -80,17 +115,27 @@ fn lattice(x: f32, y: f32, cells: usize, seed: u32) -> f32 {
     top + v * (bottom - top)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_smallest_mip_is_level_and_grey() {
-        let levels = mip_chain(256);
-        assert_eq!(levels.len(), 9);
-        for channel in &levels[8] {
-            // Eight mips keep at most KEPT^8 of half the range: 0.5 * 0.0576 * 255 = 7.4, and a rounding.
-            assert!(channel.abs_diff(128) <= 8, "{:?}", levels[8]);
+/// Distances to the nearest and the next of scattered points, one in each of `cells` x `cells` squares, in squares.
+/// Source: S. Worley, A cellular texture basis function, 1996.
+fn cells(x: f32, y: f32, cells: usize, seed: u32) -> [f32; 2] {
+    let (x, y, side) = (x * cells as f32, y * cells as f32, cells as i32);
+    let (x0, y0) = (x.floor() as i32, y.floor() as i32);
+    let mut found = [f32::INFINITY; 2];
+    for dy in -1..=1 {
+        for dx in -1..=1 {
+            let (column, row) = ((x0 + dx).rem_euclid(side), (y0 + dy).rem_euclid(side));
+            let place = (unit(column, row, seed), unit(column, row, seed ^ 0x55));
+            let distance = ((x0 + dx) as f32 + place.0 - x).hypot((y0 + dy) as f32 + place.1 - y);
+            if distance < found[0] {
+                found = [distance, found[0]];
+            } else if distance < found[1] {
+                found[1] = distance;
+            }
         }
     }
+    found
 }
+
+#[cfg(test)]
+#[path = "detail_tests.rs"]
+mod tests;

@@ -3,15 +3,13 @@
 //! Slot (x, z) of a window of n x n has the texel square at (x, z) times the tile's side in every texture. One index
 //! buffer holds the list of level 0, the list of level 1, and room for an own list a slot.
 
+use super::detail::{self, SIDE as DETAIL_SIDE};
 use terrain::block::ground_map;
 use terrain::block::mesh::{self, TILE};
 use terrain::block::window::{Level, Upload};
 
 /// Indices that a slot's own list may have: level 0.
 const OWN_INDICES: u32 = terrain::CELLS * terrain::CELLS * 2 * 3;
-
-/// Texels along the detail texture.
-const DETAIL_SIDE: u32 = 256;
 
 /// See the module.
 pub struct TerrainTextures {
@@ -64,7 +62,7 @@ impl TerrainTextures {
         };
         queue.write_buffer(&made.indices, 0, bytemuck::cast_slice(mesh::level_0()));
         queue.write_buffer(&made.indices, u64::from(level_0) * 2, bytemuck::cast_slice(mesh::level_1()));
-        for (level, texels) in super::detail::mip_chain(DETAIL_SIDE).iter().enumerate() {
+        for (level, texels) in detail::levels().iter().enumerate() {
             write(queue, &made.detail, level as u32, [0, 0, 0], DETAIL_SIDE >> level, texels);
         }
         made
