@@ -25,7 +25,7 @@ pub use sight::{Hit, Sight};
 pub use simulate::{Simulated, Stiffness, TrimFound};
 pub use trade::{Knob, KnobPoint, Trade};
 pub use trajectory::TrajectoryReport;
-pub use verify::{Draped, EdgesChecked, Far, Gpu, Near, Verify};
+pub use verify::{EdgesChecked, Far, Gpu, Near, Verify};
 pub use world::{Extent, FeatureCount, Lake, Source, Voids, WorldReport};
 
 /// A 64-bit hash as it is reported.
@@ -87,7 +87,8 @@ mod tests {
              terrain.memory_bytes.pyramid terrain.memory_bytes.payload_cpu terrain.memory_bytes.payload_gpu \
              terrain.late_blocks terrain.holes sim.steps sim.hash mesh_hash image_hash shots peak_rss_mib"
         );
-        let verify = Verify { overlay: Some(Draped::default()), gpu: Some(Gpu::default()), ..Verify::default() };
+        let verify =
+            Verify { overlay: Some(verify::Draped::default()), gpu: Some(Gpu::default()), ..Verify::default() };
         assert_eq!(
             names(&verify),
             "t_junctions position_mismatches edges_checked.templates edges_checked.pairs edges_checked.window eyes \
