@@ -5,7 +5,8 @@
 // Host:   visual/src/passes/overlay.rs
 // Twin:   kinds and packing: terrain::block::overlay (numbers compared in visual/tests/shader_contract.rs).
 // Invariant: a vertex lies in a triangle of level 0, placed from whole-number differences like a post; towards the eye it
-//         is moved in depth alone, by DEPTH_SHARE of its distance.
+//         is moved in depth alone, by DEPTH_SHARE of its distance. The edges of what has a width are moved out along the
+//         ground's plane by half a pixel, in which they fade, and farther where it would be thinner than a pixel.
 
 //!include "shared/frame.wgsl"
 //!include "shared/sky.wgsl"
@@ -38,6 +39,9 @@ const WHITE: u32 = 14u;
 // behind it at 10 km.
 const DEPTH_SHARE: f32 = 1.5e-4;
 
+// Roads are gone where one so wide would span a pixel.
+const ROAD_M: f32 = 9.0;
+
 struct Draped {
     @builtin(position) clip: vec4<f32>,
     // Column and row in the block, in posts.
@@ -52,6 +56,22 @@ struct Draped {
     @location(5) @interpolate(flat) half_m: vec2<f32>,
     @location(6) @interpolate(flat) kind: u32,
     @location(7) @interpolate(flat) slot: vec2<f32>,
+}
+
+// How much the ground rises a metre east and a metre south.
+fn slope(slot: u32, cell: vec2<u32>, share: vec2<f32>) -> vec2<f32> {
+    let side = u32(blocks[slot].side);
+    // The last row and column of posts belong to the cell before; their posts lie in the tile's apron.
+    let at = vec2<u32>(slot % side, slot / side) * TILE + cell;
+    let north_east = textureLoad(heights, at + vec2<u32>(1u, 0u), 0).r;
+    let south_west = textureLoad(heights, at + vec2<u32>(0u, 1u), 0).r;
+    let north_west = textureLoad(heights, at, 0).r;
+    let south_east = textureLoad(heights, at + vec2<u32>(1u, 1u), 0).r;
+    let upper = vec2<f32>(north_east - north_west, south_west - north_west);
+    let lower = vec2<f32>(south_east - south_west, south_east - north_east);
+    let rise = select(lower, upper, share.x + share.y <= 1.0) / window.step_m;
+    // Beside void.
+    return select(vec2<f32>(0.0), rise, abs(rise) < vec2<f32>(1e3));
 }
 
 @vertex
@@ -69,18 +89,34 @@ fn overlay_vertex(
     // As in post_of: whole numbers first.
     let away = vec2<f32>(block.first_post + vec2<i32>(cell) - window.eye_post);
     let plan_m = (away * window.step_m - window.eye_fraction_m) + share * window.step_m;
-    let relative_m = vec3<f32>(plan_m.x, (height_m - frame.eye_high_m.y) - frame.eye_low_m.y, plan_m.y);
+    var relative_m = vec3<f32>(plan_m.x, (height_m - frame.eye_high_m.y) - frame.eye_low_m.y, plan_m.y);
 
     var draped: Draped;
+    draped.kind = places.x >> PLACE_BITS;
+    let extra = places.y >> PLACE_BITS;
+    let half_m = f32(across >> 16u) / ACROSS_PER_METRE;
+    var across_m = f32(bitcast<i32>(across << 16u) >> 16u) / ACROSS_PER_METRE;
+    draped.half_m = vec2<f32>(half_m, 0.0);
+    if draped.kind == WHITE {
+        draped.half_m.y = f32(extra) / EXTENT_PER_METRE;
+    } else if half_m > 0.0 {
+        let turn = f32(extra) * (6.2831853 / 1024.0);
+        let plan = vec2<f32>(cos(turn), sin(turn));
+        let right = normalize(vec3<f32>(plan.x, dot(slope(slot, cell, share), plan), plan.y));
+        let distance_m = length(relative_m);
+        let away = dot(right, relative_m) / max(distance_m, 0.1);
+        // Ground across the line that a pixel spans; more than that is not made up at a grazing angle.
+        let pixel_m = distance_m / (frame.focal_px * max(sqrt(max(1.0 - away * away, 0.0)), 0.15));
+        let wider = (max(half_m, 0.5 * pixel_m) + 0.5 * pixel_m) / half_m;
+        relative_m += right * (across_m * (wider - 1.0));
+        across_m *= wider;
+    }
     draped.clip = frame.clip_from_relative * vec4<f32>(relative_m, 1.0);
     draped.clip.z *= 1.0 + DEPTH_SHARE;
     draped.local = vec2<f32>(cell) + share;
     draped.haze = haze(relative_m);
-    let across_m = f32(bitcast<i32>(across << 16u) >> 16u) / ACROSS_PER_METRE;
     draped.place_m = vec2<f32>(along_m, across_m);
     draped.relative_m = relative_m;
-    draped.half_m = vec2<f32>(f32(across >> 16u) / ACROSS_PER_METRE, f32(places.y >> PLACE_BITS) / EXTENT_PER_METRE);
-    draped.kind = places.x >> PLACE_BITS;
     draped.slot = vec2<f32>(f32(slot % u32(block.side)), f32(slot / u32(block.side)));
     draped.mirrored = vec3<f32>(0.0);
     if draped.kind == WATER {
@@ -217,8 +253,17 @@ fn overlay_fragment(draped: Draped) -> @location(0) vec4<f32> {
 
     var cover = 1.0;
     if half_m.x > 0.0 {
-        // Smooth inwards over a pixel; what is thinner than a pixel fades and does not crawl.
-        cover = clamp((half_m.x - abs(at_m.y)) / pixel_m.y, 0.0, 1.0) * smoothstep(0.6, 1.6, 2.0 * half_m.x / pixel_m.y);
+        let pixels = 2.0 * half_m.x / pixel_m.y;
+        if kind == WHITE {
+            cover = clamp((half_m.x - abs(at_m.y)) / pixel_m.y + 0.25, 0.0, 1.0) * smoothstep(0.4, 1.4, pixels);
+        } else {
+            // What is thinner than a pixel is drawn a pixel wide, and fades.
+            cover = clamp((max(half_m.x, 0.5 * pixel_m.y) - abs(at_m.y)) / pixel_m.y + 0.5, 0.0, 1.0);
+            cover *= min(pixels, 1.0) * smoothstep(0.08, 0.3, pixels);
+            if kind >= PATH && kind <= RAILWAY {
+                cover *= 1.0 - smoothstep(0.75, 1.0, length(draped.relative_m) / (ROAD_M * frame.focal_px));
+            }
+        }
     } else if kind == WHITE {
         cover = 1.0 - smoothstep(0.5, 1.5, pixel_m.y);
     }

@@ -272,6 +272,7 @@ fn what_is_draped_has_the_same_numbers_on_both_sides() {
     lines.push(format!("const ACROSS_PER_METRE: f32 = {ACROSS_PER_METRE:.1};"));
     lines.push(format!("const EXTENT_PER_METRE: f32 = {EXTENT_PER_METRE:.1};"));
     lines.push(format!("const UNITS: f32 = {:.1};", lattice::UNITS as f64));
+    lines.push(format!("const ROAD_M: f32 = {:.1};", visual::passes::overlay::ROAD_M));
     for line in lines {
         assert!(source.contains(&line), "expected \"{line}\" in overlay.wgsl");
     }

@@ -23,8 +23,8 @@ use terrain::near::{Change, NearTiles, Settings, TileIndex};
 /// Bytes uploaded in a frame; one block of a town is about a MiB.
 const BUDGET_BYTES: usize = 1 << 20;
 
-/// Roads are drawn where one of this width spans a pixel; beyond, all but the widest would have faded.
-const ROAD_M: f64 = 9.0;
+/// Roads are drawn where one of this width spans a pixel, metres; the shader fades them out before.
+pub const ROAD_M: f64 = 9.0;
 
 /// How overlays are kept and drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,11 +3,12 @@
 use super::clip::{CellSquare, Polygon};
 use super::lattice::{self, Lattice, Spot, UNITS};
 use super::source::{Item, Shape, Source, Sources, on_runway};
-use super::{ACROSS_PER_METRE, EXTENT_PER_METRE, Kind, Overlay, PLACE_BITS, Part, Vertex};
+use super::{ACROSS_PER_METRE, EXTENT_PER_METRE, Kind, Overlay, PLACE_BITS, Part, TURN_STEPS, Vertex};
 use crate::block::payload::Landscape;
 use crate::field::Field;
 use crate::grid::{BlockIndex, CELLS};
 use glam::DVec2;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Most vertices of a block: 80 MiB. What comes beyond is not drawn.
@@ -100,12 +101,12 @@ impl Drape<'_> {
                     });
                 }
             }
-            Shape::Area { triangles, origin } => {
+            Shape::Area { triangles, origin, along } => {
                 let frame = Frame {
                     kind: source.kind,
                     origin: *origin,
-                    along: DVec2::X,
-                    across: DVec2::Y,
+                    along: *along,
+                    across: DVec2::new(-along.y, along.x),
                     start_m: 0.0,
                     half_m: 0.0,
                     half_length_m: 0.0,
@@ -167,11 +168,17 @@ fn vertex(field: &Field, lattice: &Lattice, square: &CellSquare, frame: &Frame, 
     let packed = |value: f64, per_metre: f64, most: f64| (value * per_metre).round().clamp(-most, most);
     let across = packed(away_m.dot(frame.across), ACROSS_PER_METRE, 32_767.0) as i16 as u16;
     let half = packed(frame.half_m, ACROSS_PER_METRE, 32_767.0) as u16;
-    let extent = packed(frame.half_length_m, EXTENT_PER_METRE, 1_023.0) as u32;
+    let extra = if frame.kind == Kind::White {
+        packed(frame.half_length_m, EXTENT_PER_METRE, 1_023.0) as u32
+    } else {
+        // To the right, clockwise from east; the last of the steps is the first.
+        let turn = frame.across.y.atan2(frame.across.x).rem_euclid(TAU) / TAU;
+        (turn * TURN_STEPS).round() as u32 % TURN_STEPS as u32
+    };
     let (east, south) = (spot.u - square.column * UNITS, spot.v - square.row * UNITS);
     Vertex {
         east: east as u32 | (frame.kind as u32) << PLACE_BITS,
-        south: south as u32 | extent << PLACE_BITS,
+        south: south as u32 | extra << PLACE_BITS,
         height_m: lattice::height_m(field, spot) as f32,
         along_m: (frame.start_m + away_m.dot(frame.along)) as f32,
         across: u32::from(across) | u32::from(half) << 16,

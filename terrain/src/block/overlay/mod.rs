@@ -80,14 +80,17 @@ pub const ACROSS_PER_METRE: f64 = 256.0;
 /// Units of a mark's half length along a metre, in the high bits of [`Vertex::south`].
 pub const EXTENT_PER_METRE: f64 = 8.0;
 
+/// Steps of a whole turn in the high bits of [`Vertex::south`].
+pub const TURN_STEPS: f64 = 1_024.0;
+
 /// A vertex as the GPU takes it: 20 bytes.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
     /// Units east of the block's north-west post in the low [`PLACE_BITS`], [`Kind`] above.
     pub east: u32,
-    /// Units south of it, and above the half length of a mark in 1 / [`EXTENT_PER_METRE`] m, 0 where its ends are not
-    /// smoothed.
+    /// Units south of it, and above, of [`Kind::White`]: the half length of a mark in 1 / [`EXTENT_PER_METRE`] m, 0 where its
+    /// ends are not smoothed; of what has a width: where its right is, clockwise from east, in 1 / [`TURN_STEPS`] turns.
     pub south: u32,
     /// Above sea level, metres.
     pub height_m: f32,

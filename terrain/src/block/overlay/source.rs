@@ -34,12 +34,14 @@ pub enum Shape {
         /// Metres along at each spot, signed where a direction has a meaning.
         along_m: Vec<f32>,
     },
-    /// Triangles; along and across are metres east and south of `origin`.
+    /// Triangles, with slabs that follow the outline's longest edge.
     Area {
         /// The triangles.
         triangles: Vec<Polygon>,
         /// Where along and across are 0.
         origin: Spot,
+        /// Unit.
+        along: DVec2,
     },
     /// Paint in the frame of a runway.
     Marks {
@@ -109,7 +111,8 @@ impl Sources {
             for apron in &airfield.aprons {
                 let triangles = polygon::triangles(&lattice, apron);
                 if let Some(origin) = triangles.first().and_then(|triangle| triangle.corners().next()) {
-                    sources.push(Source { kind: Kind::Apron, shape: Shape::Area { triangles, origin } });
+                    let along = longest_edge(apron);
+                    sources.push(Source { kind: Kind::Apron, shape: Shape::Area { triangles, origin, along } });
                 }
             }
             for (line, width_m) in &airfield.taxiways {
@@ -151,6 +154,11 @@ impl Sources {
     pub fn blocks(&self) -> impl Iterator<Item = BlockIndex> + '_ {
         self.blocks.keys().copied()
     }
+}
+
+fn longest_edge(ring: &[DVec2]) -> DVec2 {
+    let edges = (0..ring.len()).map(|at| ring[(at + 1) % ring.len()] - ring[at]);
+    edges.max_by(|a, b| a.length().total_cmp(&b.length())).map_or(DVec2::X, |edge| edge.normalize_or(DVec2::X))
 }
 
 fn lengths(lattice: &Lattice, ribbon: &Ribbon) -> Vec<f32> {
