@@ -119,7 +119,7 @@ fn crown_colour(species: u32, tint: f32, turn: f32) -> vec3<f32> {
 
 // From where a plant is a triangle: a conifer looks like one early; each changes at a distance of its own.
 fn card_reach(stand: Stand) -> f32 {
-    return tile.far_m * select(1.0, 0.5, kinds[stand.species].shape < 1.5) * (0.8 + 0.2 * stand.turn);
+    return tile.far_m * select(1.0, 0.6, kinds[stand.species].shape < 1.5) * (0.8 + 0.2 * stand.turn);
 }
 
 // How far a plant has changed from a mesh to a card; the host's `mesh_reach_m` is where this is 1.
@@ -169,7 +169,10 @@ fn card_vertex(@builtin(vertex_index) index: u32) -> Card {
     let sun = frame.sun_direction;
     card.sun = vec4<f32>(dot(sun, right) * hand, dot(sun, up), dot(sun, to_eye), light.b);
     card.albedo = vec4<f32>(crown_colour(stand.species, stand.tint, stand.turn), f32(LEAVES + u32(kind.shape) * ELEVATIONS + view));
-    card.sky = vec4<f32>(light.a, up.y, to_eye.y, 0.0);
+    // The picture's mip, once a card: texels over pixels, of the side that has more.
+    let px_per_m = frame.focal_px / length(middle_m);
+    let texels = max(32.0 / (half_wide * px_per_m), 64.0 / (half_high * px_per_m));
+    card.sky = vec4<f32>(light.a, up.y, to_eye.y, clamp(log2(texels) - 0.3, 0.0, 5.0));
     return card;
 }
 
@@ -187,7 +190,7 @@ fn noise_of(pixel: vec2<f32>) -> f32 {
 
 @fragment
 fn card_fragment(card: Card) -> @location(0) vec4<f32> {
-    let texel = textureSample(pictures, picture_sampler, card.uv.xy, u32(card.albedo.a + 0.5));
+    let texel = textureSampleLevel(pictures, picture_sampler, card.uv.xy, u32(card.albedo.a + 0.5), card.sky.w);
     if texel.a < 0.5 || noise_of(card.clip.xy) < card.uv.z {
         discard;
     }
@@ -214,7 +217,7 @@ fn far_vertex(@builtin(vertex_index) index: u32) -> Plain {
     let down = clamp(to_eye.y, 0.0, 1.0);
     let high_m = mix(stand.tall_m, max(stand.wide_m, 0.6 * stand.tall_m), down);
     let corner = index % 3u;
-    let side = select(select(0.0, 0.62, corner == 1u), -0.62, corner == 0u);
+    let side = select(select(0.0, 0.45, corner == 1u), -0.45, corner == 0u);
     let at_m = stand.foot_m + right * (side * stand.wide_m) + up * select(0.0, high_m, corner == 2u);
     plain.clip = frame.clip_from_relative * vec4<f32>(at_m, 1.0);
     let light = light_under(stand.foot_m.xz);

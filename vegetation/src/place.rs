@@ -10,7 +10,7 @@
 
 use crate::clearings::Clearings;
 use crate::scatter::{hash, uniform};
-use crate::species::{Flora, SPECIES, Site};
+use crate::species::{Flora, SPECIES, Shape, Site};
 use glam::DVec2;
 use std::sync::{Arc, OnceLock};
 use terrain::block::Landscape;
@@ -69,12 +69,23 @@ pub struct Plant {
 /// A tile's plants.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Planted {
-    /// Square by square, row by row from the north-west.
+    /// Square by square, row by row from the north-west; in a square conifers first, and of each those that leave last.
     pub plants: Vec<Plant>,
-    /// For each of [`SQUARES`] x [`SQUARES`] squares the end of its plants, and the least and greatest height of their feet.
-    pub squares: Vec<(u32, [f32; 2])>,
+    /// [`SQUARES`] x [`SQUARES`].
+    pub squares: Vec<Square>,
     /// Wall time to place them, milliseconds.
     pub took_ms: f64,
+}
+
+/// A part of a tile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Square {
+    /// Where its conifers end and the others begin.
+    pub conifers_end: u32,
+    /// Where its plants end.
+    pub end: u32,
+    /// Least and greatest height of their feet, metres.
+    pub feet_m: [f32; 2],
 }
 
 /// All that plants are placed from.
@@ -98,6 +109,16 @@ impl Plant {
     /// Its foot on the plan.
     pub fn plan_m(&self, tier: &Tier, corner_m: DVec2) -> DVec2 {
         corner_m + DVec2::new(f64::from(self.at[0]), f64::from(self.at[1])) * (tier.side_m / PARTS)
+    }
+
+    /// Whether it is a cone from the ground.
+    pub fn is_conifer(&self) -> bool {
+        matches!(SPECIES[usize::from(self.species) % SPECIES.len()].shape, Shape::Spire | Shape::Conifer)
+    }
+
+    /// Farthest that it is drawn, metres.
+    pub fn reach_m(&self, tier: &Tier) -> f32 {
+        tier.reach_m as f32 * (tier.full + (1.0 - tier.full) * f32::from(self.turn) / 255.0)
     }
 
     /// How tall it stands, metres.
@@ -168,12 +189,15 @@ impl Nursery {
             }
         }
         let mut planted = Planted::default();
-        for square in squares {
-            let range = square.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], plant| {
+        for mut square in squares {
+            // Those that leave last come first, so that a part far away is the beginning of its list.
+            square.sort_by_key(|plant| (!plant.is_conifer(), u8::MAX - plant.turn));
+            let feet_m = square.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], plant| {
                 [low.min(plant.height_m), high.max(plant.height_m)]
             });
+            let conifers_end = (planted.plants.len() + square.partition_point(Plant::is_conifer)) as u32;
             planted.plants.extend(square);
-            planted.squares.push((planted.plants.len() as u32, range));
+            planted.squares.push(Square { conifers_end, end: planted.plants.len() as u32, feet_m });
         }
         planted.took_ms = start.elapsed().as_secs_f64() * 1e3;
         planted

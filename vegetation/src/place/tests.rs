@@ -42,7 +42,7 @@ fn every_plant_stands_on_the_ground_query_to_half_a_bit() {
             let corner = corner_m(&grid, tier.side_m, tile);
             let planted = nursery.plants(tier, tile, 1.0);
             assert!(planted.plants.len() <= if tier.number == 0 { 8_000 } else { 10_000 });
-            assert_eq!(planted.squares.last().unwrap().0 as usize, planted.plants.len());
+            assert_eq!(planted.squares.last().unwrap().end as usize, planted.plants.len());
             for plant in &planted.plants {
                 let at = plant.plan_m(tier, corner);
                 let ground = nursery.area().height_m(at.x, at.y).unwrap();

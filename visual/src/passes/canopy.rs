@@ -20,11 +20,11 @@ use vegetation::pictures;
 use vegetation::place::Nursery;
 
 /// Where the canopy begins to rise, metres from the eye.
-const START_M: f32 = 320.0;
+const START_M: f32 = 420.0;
 /// Where it is gone: the near zone's end.
 const REACH_M: f64 = 13_000.0;
-/// Side of the crown texture on the ground, metres: crowns of some 8 m.
-const CROWN_M: f64 = 160.0;
+/// Side of the crown texture on the ground, metres: crowns of some 6 m.
+const CROWN_M: f64 = 120.0;
 /// Bytes handed to the GPU a frame.
 const BUDGET_BYTES: usize = 200 << 10;
 /// Tiles that may be drawn in a frame, and how far apart their entries lie in the table.

@@ -26,9 +26,11 @@ use vegetation::species::{SHAPES, SPECIES};
 /// Up to where tall plants are meshes, metres; low ones change sooner.
 pub const MESH_M: f64 = 200.0;
 /// From where plants are single triangles, metres.
-pub const FAR_M: f64 = 1_900.0;
-/// The nearest that one is: a conifer that changes first; the shader's `card_reach`.
-const NEAREST_FAR_M: f64 = FAR_M * 0.5 * 0.8;
+pub const FAR_M: f64 = 1_400.0;
+/// From where conifers are, which look like one early; as the shader's `card_reach`.
+const CONIFER_FAR_M: f64 = 0.6 * FAR_M;
+/// Each plant changes somewhere between this share of that and all of it.
+const FAR_SPREAD: f64 = 0.8;
 /// A plant so tall is a mesh up to [`MESH_M`].
 const TALL_M: f32 = 20.0;
 /// Most that a plant may stand above its foot, metres.
@@ -342,9 +344,9 @@ impl Plants {
                     .filter(|plant| {
                         let plan = plant.plan_m(&tier.tier, corner);
                         let foot = DVec3::new(plan.x, f64::from(plant.height_m), plan.y) - view.eye_m;
-                        let leaves = f64::from(tier.tier.full + (1.0 - tier.tier.full) * f32::from(plant.turn) / 255.0);
                         let top = foot + DVec3::Y * f64::from(plant.tall_m());
-                        foot.length() < leaves * tier.tier.reach_m && frustum.may_see_box(foot.as_vec3(), top.as_vec3())
+                        foot.length() < f64::from(plant.reach_m(&tier.tier))
+                            && frustum.may_see_box(foot.as_vec3(), top.as_vec3())
                     })
                     .count();
             }
@@ -399,16 +401,17 @@ fn pick(
     let planted = &shown.grown.planted;
     let side_m = tier.side_m / f64::from(SQUARES);
     let mut start = 0;
-    for (number, (end, [least_m, most_m])) in (0..).zip(&planted.squares) {
-        let plants = start..*end;
-        start = *end;
+    for (number, square) in (0..).zip(&planted.squares) {
+        let plants = start..square.end;
+        start = square.end;
         if plants.is_empty() {
             continue;
         }
+        let [least_m, most_m] = square.feet_m;
         let west = origin_m.x + f64::from(number % SQUARES) * side_m;
         let north = origin_m.y + f64::from(number / SQUARES) * side_m;
-        let low = DVec3::new(west, f64::from(*least_m) - eye_height_m, north).as_vec3();
-        let high = DVec3::new(west + side_m, f64::from(*most_m + MOST_TALL_M) - eye_height_m, north + side_m).as_vec3();
+        let low = DVec3::new(west, f64::from(least_m) - eye_height_m, north).as_vec3();
+        let high = DVec3::new(west + side_m, f64::from(most_m + MOST_TALL_M) - eye_height_m, north + side_m).as_vec3();
         let margin = Vec3::new(15.0, 1.0, 15.0);
         if !frustum.may_see_box(low - margin, high + margin) {
             continue;
@@ -418,29 +421,19 @@ fn pick(
         if f64::from(nearest_m) > tier.reach_m {
             continue;
         }
-        let mut push = |far| {
-            // Far parts are drawn as one; near ones apart, so that the nearest comes first and hides the others.
-            let joins = |d: &&mut Draw| far && d.entry == entry && d.far && d.plants.end == plants.start;
-            let last = draws.last_mut().filter(joins);
-            match last {
-                Some(draw) => {
-                    draw.plants.end = plants.end;
-                    draw.distance_m = draw.distance_m.min(nearest_m);
+        let conifers = plants.start..square.conifers_end;
+        for (kind, far_m) in [(conifers, CONIFER_FAR_M), (square.conifers_end..square.end, FAR_M)] {
+            // What is gone by now stands at the list's end.
+            let standing = &planted.plants[kind.start as usize..kind.end as usize];
+            let count = standing.partition_point(|plant| plant.reach_m(tier) >= nearest_m) as u32;
+            for far in [false, true] {
+                let wanted =
+                    if far { f64::from(farthest_m) > far_m * FAR_SPREAD } else { f64::from(nearest_m) < far_m };
+                if count > 0 && wanted {
+                    let plants = kind.start..kind.start + count;
+                    draws.push(Draw { distance_m: nearest_m, far, group: shown.group.clone(), entry, plants });
                 }
-                None => draws.push(Draw {
-                    distance_m: nearest_m,
-                    far,
-                    group: shown.group.clone(),
-                    entry,
-                    plants: plants.clone(),
-                }),
             }
-        };
-        if f64::from(nearest_m) < FAR_M {
-            push(false);
-        }
-        if f64::from(farthest_m) > NEAREST_FAR_M {
-            push(true);
         }
         if f64::from(nearest_m) >= MESH_M {
             continue;
