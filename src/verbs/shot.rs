@@ -25,13 +25,13 @@ pub fn run(args: &ShotArgs, output: Output) -> Result<(), Failure> {
     let eye_m = scenery::position(&world, &scenery.area, args.eye)?;
     let heading_rad = scenery::grid_heading_rad(&world, eye_m, args.look.azimuth_deg.to_radians());
     let attitude = terrain::frame::attitude(heading_rad, args.look.elevation_deg.to_radians(), 0.0);
-    let to_sun = scenery.to_sun(args.view.time.unwrap_or_else(|| scenery::default_moment(&world)))?;
+    let heavens = scenery.heavens(args.view.time.unwrap_or_else(|| scenery::default_moment(&world)))?;
 
     let failed = |error: visual::GpuError| Failure::while_doing("taking a picture", error);
     let target = Offscreen::new(&scenery.gpu, look.size_px).map_err(failed)?;
     let view = scenery.view(eye_m, attitude, look.size_px);
-    scenery.follow(&view, 0.0, to_sun);
-    scenery.draw(&view, to_sun, 0.0, Vec::new(), &target.view).map_err(failed)?;
+    scenery.follow(&view, 0.0, heavens);
+    scenery.draw(&view, heavens, 0.0, Vec::new(), &target.view).map_err(failed)?;
     let picture = target.read(&scenery.gpu).map_err(failed)?;
     picture.write_png(&args.out).map_err(|error| Failure::Failed(error.to_string()))?;
 

@@ -11,6 +11,7 @@ pub mod capture;
 pub mod frame;
 mod glyphs;
 pub mod gpu;
+pub mod moon;
 pub mod passes;
 pub mod proof;
 pub mod renderer;

@@ -6,6 +6,7 @@
 /// Every entry shader by file name.
 pub const SOURCES: &[(&str, &str)] = &[
     ("heights.wgsl", include_str!("../../shaders/heights.wgsl")),
+    ("lights.wgsl", include_str!("../../shaders/lights.wgsl")),
     ("lines.wgsl", include_str!("../../shaders/lines.wgsl")),
     ("sky.wgsl", include_str!("../../shaders/sky.wgsl")),
     ("terrain.wgsl", include_str!("../../shaders/terrain.wgsl")),

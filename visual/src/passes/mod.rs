@@ -2,6 +2,7 @@
 
 pub mod detail;
 pub mod heights;
+pub mod lights;
 pub mod lines;
 pub mod sky;
 pub mod terrain;
