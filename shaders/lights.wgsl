@@ -17,6 +17,8 @@ struct LightsUniforms {
     eye_fraction_m: vec2<f32>,   // the eye's east and south of that post
     step_m: f32,                 // between posts
     thin_from_m: f32,            // beyond this only lights of low rank are left, brighter
+    thinnest: f32,               // the least share of them that is left
+    directed: f32,               // share of their intensity that lights with a beam are set to
 }
 
 @group(1) @binding(0) var<uniform> lights: LightsUniforms;
@@ -86,13 +88,16 @@ fn lights_vertex(@builtin(vertex_index) index: u32, light: Light) -> Corner {
 
     // Far lights of a town are thinned by rank; who stays shines for who is left out.
     let thin = lights.thin_from_m / max(distance_m, lights.thin_from_m);
-    let keep = max(thin * thin, 1.0 / 32.0);
+    let keep = max(thin * thin, lights.thinnest);
     let stays = clamp((keep - light.axis.w) / (0.25 * keep) + 0.5, 0.0, 1.0) / keep;
     let shares = select(1.0, stays, light.axis.w > 0.0);
 
     let sent = emitted(light, -relative_m);
     let most = max(max(sent.r, sent.g), sent.b);
-    let lux = light.height.y * most * shares * haze_from_eye(relative_m) / (distance_m * distance_m);
+    // Runway and approach lights are set down as it gets dark; a beacon is not.
+    let kind = u32(round(light.colour.w * 255.0));
+    let set_to = select(1.0, lights.directed, kind == 1u || kind == 2u);
+    let lux = light.height.y * most * shares * set_to * haze_from_eye(relative_m) / (distance_m * distance_m);
     let ratio = lux / frame.threshold_lux;
     // Below the threshold it goes out softly.
     let bright = AT_THRESHOLD * sqrt(ratio) * smoothstep(0.1, 1.0, ratio) * frame.exposure;

@@ -25,7 +25,8 @@ const AERIAL_HEIGHT: f32 = 32.0;
 const AERIAL_DEPTH: f32 = 24.0;
 
 // What light scattered in over a distance tends to, so that times 1 - haze_from_eye it is that light: from the aerial table
-// where there is one, else the sky's. One texture read.
+// where there is one, else the sky's; the sky's as well where the ground fades into it. Two texture reads, one without a
+// table.
 fn scattered(relative_m: vec3<f32>) -> vec3<f32> {
     let distance_m = length(relative_m);
     let direction = relative_m / max(distance_m, 1e-3);
@@ -39,7 +40,8 @@ fn scattered(relative_m: vec3<f32>) -> vec3<f32> {
     let w = sqrt(min(distance_m / frame.aerial_reach_m, 1.0));
     let size = vec3<f32>(AERIAL_WIDTH, AERIAL_HEIGHT, AERIAL_DEPTH);
     let texel = (vec3<f32>(u, v, w) * (size - 1.0) + 0.5) / size;
-    return textureSampleLevel(aerial_table, sky_sampler, texel, 0.0).rgb;
+    let near = textureSampleLevel(aerial_table, sky_sampler, texel, 0.0).rgb;
+    return mix(near, sky_radiance(direction), smoothstep(0.7 * frame.fade_end_m, frame.fade_end_m, length(relative_m.xz)));
 }
 
 // Mean of a density exp(-height / scale) between two heights, given in scale heights above where it is 1.

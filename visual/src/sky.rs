@@ -32,7 +32,7 @@ use std::f32::consts::{PI, TAU};
 pub const TABLE_WIDTH: u32 = 128;
 /// Rows of the sky table: square root of the sine of the elevation, 0 at the horizon, 1 straight up.
 pub const TABLE_HEIGHT: u32 = 64;
-/// Steps of one ray of the table.
+/// Steps of one ray of the table, by day.
 pub const RAY_STEPS: usize = 40;
 /// Height over which haze thins by a factor e in good visibility, metres: between 1.2 km (clean sea-level air) and the
 /// 3 km and more of a well mixed summer layer over dry land.
@@ -63,7 +63,7 @@ const GROUND_ALBEDO: f32 = 0.3;
 /// Starlight and airglow, far above nature's so that a screen can show it.
 const NIGHT: Vec3 = Vec3::new(1.5e-6, 2.1e-6, 3.6e-6);
 /// What the ground gets by night beside that: the eye adapted to the dark sees the ground, a screen's black would not show it.
-const NIGHT_GROUND: Vec3 = Vec3::new(1.2e-5, 1.5e-5, 2.2e-5);
+const NIGHT_GROUND: Vec3 = Vec3::new(2.4e-5, 3.0e-5, 4.2e-5);
 /// Irradiance by the full moon above the air, above nature's 2e-6 as [`NIGHT`] is but less so; bluish, as an eye sees it
 /// that has few cones left.
 const FULL_MOON: Vec3 = Vec3::new(1.25e-4, 1.5e-4, 1.9e-4);
@@ -185,11 +185,13 @@ impl Air {
         let all = sun_irradiance * sun_sin.max(0.6) + sky_irradiance + moon_irradiance * moon_sin.max(0.0);
         let exposure = exposure(all);
 
+        // The edge of the Earth's shadow falls between steps: more of them make it smooth.
+        let steps = if sun_sin < 0.05 { 3 * RAY_STEPS } else { RAY_STEPS };
         let mut table = Vec::with_capacity((TABLE_WIDTH * TABLE_HEIGHT * 4) as usize);
         for row in 0..TABLE_HEIGHT {
             let elevation_sin = (row as f32 / (TABLE_HEIGHT - 1) as f32).powi(2);
             let level = (1.0 - elevation_sin * elevation_sin).max(0.0).sqrt();
-            let ray = self.ray(eye_m, elevation_sin, RAY_STEPS);
+            let ray = self.ray(eye_m, elevation_sin, steps);
             let moonlit = if moon.share > 0.0 { self.moonlit(&ray, elevation_sin, moon) } else { Vec3::ZERO };
             for column in 0..TABLE_WIDTH {
                 let half_sin = column as f32 / (TABLE_WIDTH - 1) as f32;
@@ -442,7 +444,7 @@ pub fn molecules_at(height_m: f32) -> f32 {
 pub fn exposure(irradiance: Vec3) -> f32 {
     const DEEP_DUSK: f32 = 0.01;
     let luminance = irradiance.dot(LUMINANCE).max(1e-7);
-    3.1 * luminance.max(DEEP_DUSK).powf(-0.6) * (luminance / DEEP_DUSK).min(1.0).powf(-0.86)
+    3.1 * luminance.max(DEEP_DUSK).powf(-0.6) * (luminance / DEEP_DUSK).min(1.0).powf(-0.93)
 }
 
 fn rayleigh_phase(cosine: f32) -> f32 {

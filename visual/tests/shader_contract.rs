@@ -212,7 +212,7 @@ fn lights_are_tightly_packed_in_the_order_of_their_locations() {
         members.iter().map(|(name, _)| name).collect::<Vec<_>>(),
         host.iter().map(|(name, _)| name).collect::<Vec<_>>()
     );
-    let uniforms = host![LightsUniforms: eye_post, eye_fraction_m, step_m, thin_from_m];
+    let uniforms = host![LightsUniforms: eye_post, eye_fraction_m, step_m, thin_from_m, thinnest, directed];
     assert_eq!(layout(&module, "LightsUniforms"), (uniforms, size_of::<LightsUniforms>() as u32));
 }
 

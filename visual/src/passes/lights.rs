@@ -28,9 +28,9 @@ const SIDE_M: f64 = 3_000.0;
 /// Most bytes taken over in a frame.
 const BUDGET_BYTES: usize = 192 << 10;
 /// Lamps of towns are thinned beyond this, metres.
-const THIN_FROM_M: f64 = 5_000.0;
-/// The least share of lamps that is left; the shader's.
-const THINNEST: f64 = 1.0 / 32.0;
+const THIN_FROM_M: f64 = 9_000.0;
+/// The least share of lamps that is left.
+const THINNEST: f64 = 1.0 / 12.0;
 /// Towns are lit below this elevation of the sun, radians: two degrees under the horizon.
 const TOWN_DARK_RAD: f64 = -2.0 * std::f64::consts::PI / 180.0;
 /// Airfields are, below this, radians, or where one sees less than [`AIRFIELD_DIM_M`].
@@ -50,18 +50,31 @@ pub struct Reach {
 }
 
 /// Which lights are lit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dark {
     /// All of an airfield's, not only those of its approach.
     pub airfields: bool,
     /// Towns.
     pub towns: bool,
+    /// Share of their intensity that runway and approach lights are set to: all by day, 4 % in a clear night, more in
+    /// poor visibility (stages after ICAO Annex 14, 5.3.1.10).
+    pub directed: f32,
+}
+
+impl Default for Dark {
+    /// Broad day.
+    fn default() -> Self {
+        Self { airfields: false, towns: false, directed: 1.0 }
+    }
 }
 
 impl Dark {
     /// Under a sun at an elevation (radians), in air of a visibility (metres).
     pub fn of(sun_elevation_rad: f64, visibility_m: f64) -> Self {
+        let night = ((2.0 - sun_elevation_rad.to_degrees()) / 10.0).clamp(0.0, 1.0);
+        let least: f64 = if visibility_m < AIRFIELD_DIM_M { 0.3 } else { 0.04 };
         Self {
+            directed: least.powf(night) as f32,
             airfields: sun_elevation_rad < AIRFIELD_DARK_RAD || visibility_m < AIRFIELD_DIM_M,
             towns: sun_elevation_rad < TOWN_DARK_RAD,
         }
@@ -80,6 +93,10 @@ pub struct LightsUniforms {
     pub step_m: f32,
     /// Beyond this lights with a rank are thinned, metres.
     pub thin_from_m: f32,
+    /// The least share of them that is left.
+    pub thinnest: f32,
+    /// Share of their intensity that lights with a beam are set to.
+    pub directed: f32,
 }
 
 /// Mirror of the shader's `Light`: one instance.
@@ -346,7 +363,9 @@ impl Lights {
         if view_index == 0 && !draws.is_empty() {
             let (eye_post, eye_fraction_m) = eye_uniforms(&self.grid, view.eye_m);
             let (step_m, thin_from_m) = (self.grid.step_m as f32, THIN_FROM_M as f32);
-            let uniforms = LightsUniforms { eye_post, eye_fraction_m, step_m, thin_from_m };
+            let thinnest = THINNEST as f32;
+            let uniforms =
+                LightsUniforms { eye_post, eye_fraction_m, step_m, thin_from_m, thinnest, directed: dark.directed };
             gpu.queue.write_buffer(&self.uniforms, 0, bytemuck::bytes_of(&uniforms));
         }
         self.draws[view_index] = draws;
@@ -458,7 +477,8 @@ mod tests {
         assert_eq!(made.by_day, 2);
         assert_eq!(made.instances.iter().map(|i| i.height[1]).collect::<Vec<_>>(), [2.0, 3.0, 1.0]);
         assert_eq!(Dark::of(0.5, 60_000.0), Dark::default());
-        assert_eq!(Dark::of(-0.05, 60_000.0), Dark { airfields: true, towns: true });
-        assert_eq!(Dark::of(0.5, 800.0), Dark { airfields: true, towns: false });
+        let night = Dark::of(-0.3, 60_000.0);
+        assert!(night.airfields && night.towns && (night.directed - 0.04).abs() < 1e-6);
+        assert_eq!(Dark::of(0.5, 800.0), Dark { airfields: true, ..Dark::default() });
     }
 }

@@ -18,10 +18,12 @@ use std::f32::consts::PI;
 /// Texels of the aerial table along azimuth (sine of half of it from the sun), elevation ([`aerial_elevation_sin`]) and
 /// distance (square root of its share of the reach).
 pub const AERIAL_SIZE: [u32; 3] = [12, 32, 24];
-/// Steps between two distances of the table.
+/// Least steps between two distances of the table; more where one goes through the haze's scale height in between.
 const BETWEEN: usize = 3;
+/// Most of them.
+const MOST_BETWEEN: f32 = 48.0;
 /// Albedo of ground whose light is coloured on the way.
-pub(super) const MEAN_ALBEDO: f32 = 0.15;
+const MEAN_ALBEDO: f32 = 0.15;
 
 /// How light scattered on the way from the ground is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -74,7 +76,10 @@ impl Air {
                 let mut from_m = 0.0;
                 for slice in 0..slices {
                     let to_m = distance_m(slice);
-                    so_far = self.march(so_far, direction, sun, eye_m, [from_m, to_m], BETWEEN);
+                    // Four steps a scale height: half the density's change within one is left to the rule of the middle.
+                    let scales = (rise * (to_m - from_m)).abs() / self.haze_scale_m;
+                    let steps = BETWEEN.max((4.0 * scales).min(MOST_BETWEEN) as usize);
+                    so_far = self.march(so_far, direction, sun, eye_m, [from_m, to_m], steps);
                     from_m = to_m;
                     // What the night and the moon add to a hazy way tends to what they add to the horizon.
                     let tends = tends_to(&so_far, ground) + light.night_haze;
