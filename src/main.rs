@@ -8,6 +8,7 @@ mod args;
 mod bench;
 mod failure;
 mod flight;
+mod fog_base;
 mod gpu_proof;
 mod hud;
 mod models;

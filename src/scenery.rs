@@ -5,6 +5,7 @@
 
 use crate::args::ViewArgs;
 use crate::failure::Failure;
+use crate::fog_base;
 use crate::open_world;
 use crate::output;
 use crate::things::Things;
@@ -19,9 +20,14 @@ use terrain::store::World;
 use terrain::{Area, Geodetic};
 use visual::camera::View;
 use visual::gpu::AdapterKind;
+use visual::passes::lights::Dark;
 use visual::passes::lines::Stroke;
 use visual::passes::terrain::{Terrain, TerrainLook};
+use visual::sky::HazeGrade;
 use visual::{Frame, Gpu, Renderer, Scene};
+
+/// A fog's base moves in steps of this, metres.
+const FOG_BASE_STEP_M: f64 = 5.0;
 
 /// What of a world is drawn beside its ground. What a world does not have costs nothing whatever stands here.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +45,22 @@ pub struct Content {
 impl Content {
     /// All of it.
     pub const ALL: Self = Self { overlays: true, objects: true, plants: 1.0, lights: true };
+}
+
+/// What shines in the sky: unit vectors, world frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Heavens {
+    /// Towards the sun.
+    pub to_sun: DVec3,
+    /// Towards the moon, where it is known.
+    pub to_moon: Option<DVec3>,
+}
+
+impl From<DVec3> for Heavens {
+    /// A sun without a moon.
+    fn from(to_sun: DVec3) -> Self {
+        Self { to_sun, to_moon: None }
+    }
 }
 
 /// Everything that decides a picture but the eye and the time.
@@ -68,6 +90,8 @@ pub struct Look {
     pub content: Content,
     /// Wait for every block and every sky table.
     pub wait: bool,
+    /// How light scattered on the way from the ground is found.
+    pub haze: HazeGrade,
     /// Keep depth for reading back.
     pub keep_depth: bool,
 }
@@ -105,10 +129,10 @@ impl Look {
 
     /// A preset alone: 1280 x 720 pixels, 60 degrees, waiting for every block.
     pub fn preset(quality: Quality) -> Self {
-        let (window, msaa, render_scale, detail, plants) = match quality {
-            Quality::Fine => (24, 4, 1.0, 2, 1.0),
-            Quality::Standard => (24, 1, 1.0, 2, 1.0),
-            Quality::Software => (12, 1, 0.67, 0, 0.4),
+        let (window, msaa, render_scale, detail, plants, haze) = match quality {
+            Quality::Fine => (24, 4, 1.0, 2, 1.0, HazeGrade::Table),
+            Quality::Standard => (24, 1, 1.0, 2, 1.0, HazeGrade::Table),
+            Quality::Software => (12, 1, 0.67, 0, 0.4, HazeGrade::Horizon),
         };
         Self {
             size_px: [1280, 720],
@@ -123,6 +147,7 @@ impl Look {
             ground: TerrainLook { detail, overlay: false, wireframe: false },
             content: Content { plants, ..Content::ALL },
             wait: true,
+            haze,
             keep_depth: false,
         }
     }
@@ -180,6 +205,7 @@ impl Scenery {
                 render_scale: look.render_scale,
                 keep_depth: look.keep_depth,
                 sky_in_background: !look.wait,
+                haze: look.haze,
             },
         );
         let near_m = settings.rings.radii_m[0];
@@ -197,17 +223,30 @@ impl Scenery {
         self.look.visibility_m.map_or(most_m, |asked_m| asked_m.min(most_m))
     }
 
+    /// Height that the visibility holds at, above sea level, metres: the world's lowest ground; of a fog, which fills
+    /// every valley by itself, the lowest ground about the eye.
+    fn haze_base_m(&self, eye_m: DVec3) -> f64 {
+        let world_m = self.world.info.statistics.min_m.max(0.0);
+        let fog = visual::sky::fog_share(self.visibility_m());
+        if fog == 0.0 {
+            return world_m;
+        }
+        let near_m = fog_base::near_m(&self.area, DVec2::new(eye_m.x, eye_m.z)).unwrap_or(world_m);
+        // In steps, since new air is made for each.
+        ((world_m + fog * (near_m.max(0.0) - world_m)) / FOG_BASE_STEP_M).round() * FOG_BASE_STEP_M
+    }
+
     /// Depth of the last picture, if it was kept.
     pub fn depth(&self) -> Option<&visual::Texture> {
         self.renderer.depth(0)
     }
 
-    /// Towards the sun at a moment over the world's centre, world frame.
+    /// Sun and moon at a moment over the world's centre.
     ///
     /// # Errors
-    /// [`Failure::Failed`] where the position is not known.
-    pub fn to_sun(&self, at: UtcTime) -> Result<DVec3, Failure> {
-        to_sun(&self.world, at)
+    /// [`Failure::Failed`] where the sun's position is not known.
+    pub fn heavens(&self, at: UtcTime) -> Result<Heavens, Failure> {
+        heavens(&self.world, at)
     }
 
     /// Changes how the ground is drawn.
@@ -223,10 +262,12 @@ impl Scenery {
     }
 
     /// Streams, culls: all that the render thread does for the ground before it draws.
-    pub fn follow(&mut self, view: &View, speed_mps: f64, to_sun: DVec3) {
+    pub fn follow(&mut self, view: &View, speed_mps: f64, heavens: impl Into<Heavens>) {
+        let Heavens { to_sun, .. } = heavens.into();
         self.terrain.follow(&self.gpu, view.eye_m, speed_mps, to_sun);
         self.terrain.prepare(&self.gpu, 0, view);
-        self.things.follow(&self.gpu, &self.terrain, view, speed_mps);
+        let dark = Dark::of(to_sun.y.clamp(-1.0, 1.0).asin(), self.visibility_m());
+        self.things.follow(&self.gpu, &self.terrain, view, speed_mps, dark);
     }
 
     /// Blocks and tiles within their reach that were not there when last followed.
@@ -264,16 +305,17 @@ impl Scenery {
     pub fn draw(
         &mut self,
         view: &View,
-        to_sun: DVec3,
+        heavens: impl Into<Heavens>,
         time_s: f64,
         hud: Vec<Stroke>,
         target: &visual::TextureView,
     ) -> Result<(), visual::GpuError> {
-        let statistics = &self.world.info.statistics;
+        let Heavens { to_sun, to_moon } = heavens.into();
         let scene = Scene {
             sun_direction: to_sun,
+            moon_direction: to_moon,
             visibility_m: self.visibility_m(),
-            haze_base_m: statistics.min_m.max(0.0),
+            haze_base_m: self.haze_base_m(view.eye_m),
             view_range_m: self.terrain.window().view_range_min_m(),
             exposure: 1.0,
             time_s,
@@ -298,6 +340,18 @@ fn tell_of_missing_edges(gpu: &Gpu, ground: TerrainLook) {
             ));
         });
     }
+}
+
+/// Sun and moon at a moment over a world's centre.
+///
+/// # Errors
+/// [`Failure::Failed`] where the sun's position is not known.
+pub fn heavens(world: &World, at: UtcTime) -> Result<Heavens, Failure> {
+    let centre = world.projection.centre();
+    let moon = visual::moon::position(at.unix_s(), centre.lat_deg(), centre.lon_deg()).ok();
+    // At the centre grid north is true north.
+    let to_moon = moon.map(|moon| terrain::frame::direction(moon.true_azimuth_rad, moon.elevation_rad));
+    Ok(Heavens { to_sun: to_sun(world, at)?, to_moon })
 }
 
 /// Towards the sun at a moment over a world's centre, world frame.

@@ -6,7 +6,7 @@
 pub mod effects;
 
 use crate::hud::{self, Anchor, HudInput};
-use crate::scenery;
+use crate::scenery::{self, Heavens};
 use glam::{DQuat, DVec3, Vec2};
 use sim::input::Head;
 use sim::{HeightAt, Snapshot, UtcTime};
@@ -53,32 +53,32 @@ pub fn ground_speed_mps(snapshot: &Snapshot) -> f64 {
     velocity.x.hypot(velocity.z)
 }
 
-/// The sun over a world, taken anew each whole second of the scene's time.
+/// Sun and moon over a world, taken anew each whole second of the scene's time.
 #[derive(Debug, Clone, Copy)]
 pub struct Sun {
     second: i64,
-    to_sun: DVec3,
+    heavens: Heavens,
 }
 
 impl Sun {
-    /// The sun at a moment.
+    /// Both at a moment.
     ///
     /// # Errors
-    /// [`crate::failure::Failure::Failed`] where its position is not known.
+    /// [`crate::failure::Failure::Failed`] where the sun's position is not known.
     pub fn new(world: &World, date: UtcTime) -> Result<Self, crate::failure::Failure> {
         let second = date.unix_ns.div_euclid(1_000_000_000);
-        let to_sun = scenery::to_sun(world, UtcTime { unix_ns: second * 1_000_000_000 })?;
-        Ok(Self { second, to_sun })
+        let heavens = scenery::heavens(world, UtcTime { unix_ns: second * 1_000_000_000 })?;
+        Ok(Self { second, heavens })
     }
 
-    /// Towards the sun now, unit, world frame; where its position is not known, where it last stood.
-    pub fn at(&mut self, world: &World, date: UtcTime) -> DVec3 {
+    /// Where they stand now; where the sun's position is not known, where they last stood.
+    pub fn at(&mut self, world: &World, date: UtcTime) -> Heavens {
         if date.unix_ns.div_euclid(1_000_000_000) != self.second
             && let Ok(now) = Self::new(world, date)
         {
             *self = now;
         }
-        self.to_sun
+        self.heavens
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::report;
-use crate::scenery::Scenery;
+use crate::scenery::{Heavens, Scenery};
 use glam::{DQuat, DVec3};
 use std::path::Path;
 use terrain::store::World;
@@ -18,8 +18,8 @@ pub struct Standpoint {
     pub eye_m: DVec3,
     /// View axes to world.
     pub attitude: DQuat,
-    /// Towards the sun.
-    pub to_sun: DVec3,
+    /// What shines.
+    pub heavens: Heavens,
 }
 
 /// View axes for a direction of view given by a true azimuth and an elevation, degrees, from an eye.
@@ -36,12 +36,12 @@ pub fn take(scenery: &mut Scenery, at: &Standpoint, target: &Offscreen) -> Resul
     let failed = |error: visual::GpuError| Failure::while_doing("taking a picture", error);
     let view = scenery.view(at.eye_m, at.attitude, target.size_px);
     for _ in 0..MOST_UPDATES {
-        scenery.follow(&view, 0.0, at.to_sun);
+        scenery.follow(&view, 0.0, at.heavens);
         if scenery.is_settled() {
             break;
         }
     }
-    scenery.draw(&view, at.to_sun, 0.0, Vec::new(), &target.view).map_err(failed)?;
+    scenery.draw(&view, at.heavens, 0.0, Vec::new(), &target.view).map_err(failed)?;
     target.read(&scenery.gpu).map_err(failed)
 }
 

@@ -1,5 +1,5 @@
 //! All that stands and lies on the ground of a scenery: what is draped on it, plants, forests, buildings and other
-//! things; and the smoke and fire over it.
+//! things; the smoke and fire over it; the lights on it.
 //!
 //! Each kind is there only if the world has something of it and the look shows it: no pass, no thread, no byte else.
 
@@ -17,12 +17,16 @@ use visual::models::Mesh;
 use visual::models::things::Model;
 use visual::particles::Emitter;
 use visual::passes::canopy::{CanopyCounts, CanopyPass};
+use visual::passes::lights::{Dark, Lights, Reach};
 use visual::passes::objects::{ObjectCounts, Objects};
 use visual::passes::overlay::{OverlayPass, OverlaySettings};
 use visual::passes::particles::Particles;
 use visual::passes::plants::{PlantCounts, Plants};
 use visual::passes::terrain::Terrain;
 use visual::{Gpu, Layer, RenderPass, Renderer};
+
+/// Farthest a town's lamps are drawn, metres.
+const TOWNS_REACH_M: f64 = 45_000.0;
 
 /// See the module.
 pub struct Things {
@@ -33,6 +37,7 @@ pub struct Things {
     /// Shapes that replaced generated ones.
     own_models: Vec<(Model, Mesh)>,
     particles: Particles,
+    lights: Option<Lights>,
     /// The view last followed.
     view: Option<View>,
 }
@@ -64,12 +69,20 @@ impl Things {
         let objects = (look.content.objects && !standing.is_empty())
             .then(|| Objects::new(gpu, frame, ground, format, grid, standing.clone(), near_m, look.wait));
         let particles = Particles::new(frame, format);
+        let lights = look.content.lights.then(|| {
+            let reach_m = f64::from(look.window.saturating_sub(2)) * 0.5 * grid.block_m();
+            let reach = Reach { airfields_m: reach_m, towns_m: reach_m.min(TOWNS_REACH_M), wait: look.wait };
+            let (area, features, cover) =
+                (landscape.ground.whole(), landscape.features.clone(), landscape.cover.clone());
+            Lights::new(gpu, frame, format, area, features, cover, reach)
+        });
         let overlay = overlay.flatten();
-        Self { overlay, plants, canopy, objects, own_models: Vec::new(), particles, view: None }
+        let lights = lights.flatten();
+        Self { overlay, plants, canopy, objects, own_models: Vec::new(), particles, lights, view: None }
     }
 
     /// Streams around the eye and culls for a view. The terrain must have followed already.
-    pub fn follow(&mut self, gpu: &Gpu, terrain: &Terrain, view: &View, speed_mps: f64) {
+    pub fn follow(&mut self, gpu: &Gpu, terrain: &Terrain, view: &View, speed_mps: f64, dark: Dark) {
         let eye_m: DVec3 = view.eye_m;
         if let Some(overlay) = &mut self.overlay {
             overlay.follow(gpu, eye_m, speed_mps);
@@ -86,6 +99,10 @@ impl Things {
         if let Some(objects) = &mut self.objects {
             objects.follow(gpu, eye_m, speed_mps);
             objects.prepare(gpu, 0, view);
+        }
+        if let Some(lights) = &mut self.lights {
+            lights.follow(gpu, eye_m, speed_mps, dark);
+            lights.prepare(gpu, 0, view);
         }
         self.view = Some(*view);
     }
@@ -114,7 +131,12 @@ impl Things {
                     overlay.draw(view_index, terrain, pass);
                 }
             }
-            Layer::Blended => self.particles.draw(view_index, pass),
+            Layer::Blended => {
+                if let Some(lights) = &self.lights {
+                    lights.draw(view_index, pass);
+                }
+                self.particles.draw(view_index, pass);
+            }
         }
     }
 

@@ -127,8 +127,8 @@ fn standpoint(entry: &Entry, world: &World, scenery: &Scenery) -> Result<Standpo
         }
     }
     let (eye_m, attitude) = place(entry, world, scenery)?;
-    let to_sun = scenery.to_sun(time).map_err(|error| error.to_string())?;
-    Ok(Standpoint { eye_m, attitude, to_sun })
+    let heavens = scenery.heavens(time).map_err(|error| error.to_string())?;
+    Ok(Standpoint { eye_m, attitude, heavens })
 }
 
 fn place(entry: &Entry, world: &World, scenery: &Scenery) -> Result<(DVec3, DQuat), String> {

@@ -14,9 +14,9 @@ struct FrameUniforms {
     near_m: f32,
     ray_down: vec3<f32>,             // added from the top edge to the bottom
     focal_px: f32,                   // pixels per unit of tangent, vertically
-    sun_direction: vec3<f32>,        // unit, towards the sun
+    sun_direction: vec3<f32>,        // unit, towards the key light: the sun, or the moon where that is brighter
     sun_radius_rad: f32,
-    sun_irradiance: vec3<f32>,       // exposed, on a surface turned to the sun, near the ground
+    sun_irradiance: vec3<f32>,       // exposed, by the key light on a surface turned to it, near the ground
     molecules_per_m: f32,            // extinction of green light by molecules at sea level
     sky_irradiance: vec3<f32>,       // exposed, on level ground
     haze_per_m: f32,                 // extinction by haze at its base
@@ -28,8 +28,21 @@ struct FrameUniforms {
     fade_end_m: f32,                 // and where it is gone
     eye_molecules: f32,              // density at the eye's height, 1 at sea level
     eye_haze: f32,                   // density at the eye's height, 1 at the haze base
+    disc_direction: vec3<f32>,       // unit, towards the sun itself
+    threshold_lux: f32,              // least illuminance that makes a point of light seen
+    moon_direction: vec3<f32>,       // unit
+    moon_radius_rad: f32,            // 0 where there is no moon
+    moon_to_sun: vec3<f32>,          // unit, from the moon to the sun
+    moon_key: f32,                   // 1 where the moon is the key light, which no light map shadows
+    moon_light: vec3<f32>,           // exposed radiance of the moon's lit side, as the eye sees it
+    haze_scale_m: f32,               // height over which haze thins by a factor e
+    aerial_reach_m: f32,             // greatest distance of the aerial table; 0: there is none
+    lamps: f32,                      // share of a town's lamps that are lit, 0 by day
+    moon_share: f32,                 // of the moon's light, by phase: 1 when full
+    sun_sin: f32,                    // of the sun's own elevation
 }
 
 @group(0) @binding(0) var<uniform> frame: FrameUniforms;
 @group(0) @binding(1) var sky_table: texture_2d<f32>;
 @group(0) @binding(2) var sky_sampler: sampler;
+@group(0) @binding(3) var aerial_table: texture_3d<f32>;

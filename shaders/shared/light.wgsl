@@ -8,7 +8,7 @@
 // Light scattered towards the eye on the way to a point, and the share of the point's own light that arrives.
 fn haze(relative_m: vec3<f32>) -> vec4<f32> {
     let through = haze_from_eye(relative_m);
-    return vec4<f32>(sky_radiance(normalize(relative_m)) * (1.0 - through), through);
+    return vec4<f32>(scattered(relative_m) * (1.0 - through), through);
 }
 
 fn light_at(local: vec2<f32>, slot: vec2<f32>) -> vec4<f32> {
@@ -21,7 +21,7 @@ fn lit(albedo: vec3<f32>, light: vec4<f32>, tilt: vec2<f32>) -> vec3<f32> {
     let plan = light.rg * 2.0 - 1.0;
     let up = sqrt(max(1.0 - dot(plan, plan), 0.01));
     // The tilt is small: the bent normal is not made unit length again.
-    let sun = max(dot(vec3<f32>(plan + tilt, up).xzy, frame.sun_direction), 0.0) * light.b;
+    let sun = max(dot(vec3<f32>(plan + tilt, up).xzy, frame.sun_direction), 0.0) * max(light.b, frame.moon_key);
     let sky = light.a * (0.5 + 0.5 * up);
     // What the sky does not reach is lit by other ground a little.
     let bounced = 0.12 * (1.0 - sky) * max(frame.sun_direction.y, 0.0);

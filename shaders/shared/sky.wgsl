@@ -3,7 +3,6 @@
 
 const TABLE_WIDTH: f32 = 128.0;
 const TABLE_HEIGHT: f32 = 64.0;
-const HAZE_SCALE_HEIGHT_M: f32 = 2000.0;
 const MOLECULE_SCALE_HEIGHT_M: f32 = 8000.0;
 
 // Exposed radiance of the sky along a unit direction; below the horizon the horizon's. One texture read.
@@ -21,6 +20,30 @@ fn sky_radiance(direction: vec3<f32>) -> vec3<f32> {
     return textureSampleLevel(sky_table, sky_sampler, texel, 0.0).rgb;
 }
 
+const AERIAL_WIDTH: f32 = 12.0;
+const AERIAL_HEIGHT: f32 = 32.0;
+const AERIAL_DEPTH: f32 = 24.0;
+
+// What light scattered in over a distance tends to, so that times 1 - haze_from_eye it is that light: from the aerial table
+// where there is one, else the sky's; the sky's as well where the ground fades into it. Two texture reads, one without a
+// table.
+fn scattered(relative_m: vec3<f32>) -> vec3<f32> {
+    let distance_m = length(relative_m);
+    let direction = relative_m / max(distance_m, 1e-3);
+    if frame.aerial_reach_m <= 0.0 {
+        return sky_radiance(direction);
+    }
+    let azimuth_cos = dot(direction.xz, frame.sun_level) * inverseSqrt(max(dot(direction.xz, direction.xz), 1e-12));
+    let u = sqrt(max(0.5 - 0.5 * azimuth_cos, 0.0));
+    // As sky::aerial_elevation_sin: the fourth root of the sine, finest at the horizon, from -1 to 1.
+    let v = 0.5 + 0.5 * sign(direction.y) * sqrt(sqrt(abs(direction.y)));
+    let w = sqrt(min(distance_m / frame.aerial_reach_m, 1.0));
+    let size = vec3<f32>(AERIAL_WIDTH, AERIAL_HEIGHT, AERIAL_DEPTH);
+    let texel = (vec3<f32>(u, v, w) * (size - 1.0) + 0.5) / size;
+    let near = textureSampleLevel(aerial_table, sky_sampler, texel, 0.0).rgb;
+    return mix(near, sky_radiance(direction), smoothstep(0.7 * frame.fade_end_m, frame.fade_end_m, length(relative_m.xz)));
+}
+
 // Mean of a density exp(-height / scale) between two heights, given in scale heights above where it is 1.
 fn mean_density(eye: f32, eye_density: f32, point: f32) -> f32 {
     let rise = point - eye;
@@ -33,8 +56,8 @@ fn mean_density(eye: f32, eye_density: f32, point: f32) -> f32 {
 // fade_end_m on. On the level at the haze base it is 2 % at the visibility.
 fn haze_from_eye(relative_m: vec3<f32>) -> f32 {
     let point_height_m = frame.eye_altitude_m + relative_m.y;
-    let eye_haze = clamp((frame.eye_altitude_m - frame.haze_base_m) / HAZE_SCALE_HEIGHT_M, 0.0, 60.0);
-    let point_haze = clamp((point_height_m - frame.haze_base_m) / HAZE_SCALE_HEIGHT_M, 0.0, 60.0);
+    let eye_haze = clamp((frame.eye_altitude_m - frame.haze_base_m) / frame.haze_scale_m, 0.0, 60.0);
+    let point_haze = clamp((point_height_m - frame.haze_base_m) / frame.haze_scale_m, 0.0, 60.0);
     let eye_molecules = clamp(frame.eye_altitude_m / MOLECULE_SCALE_HEIGHT_M, 0.0, 60.0);
     let point_molecules = clamp(point_height_m / MOLECULE_SCALE_HEIGHT_M, 0.0, 60.0);
     let haze = frame.haze_per_m * mean_density(eye_haze, frame.eye_haze, point_haze);

@@ -5,7 +5,7 @@
 //! overlay.
 
 use crate::failure::Failure;
-use crate::scenery::Scenery;
+use crate::scenery::{Heavens, Scenery};
 use glam::{DQuat, DVec2, DVec3};
 use sim::track::{Flight, ISSYK_KUL_FLIGHT, TrackHeight};
 use sim::{Track, frame};
@@ -73,11 +73,16 @@ impl Camera {
     ///
     /// # Errors
     /// What the device reports.
-    pub fn settle(&self, scenery: &mut Scenery, to_sun: DVec3, target: &Offscreen) -> Result<(), Failure> {
+    pub fn settle(
+        &self,
+        scenery: &mut Scenery,
+        heavens: impl Into<Heavens> + Copy,
+        target: &Offscreen,
+    ) -> Result<(), Failure> {
         let view = scenery.view(self.eye_m, self.attitude, target.size_px);
         for _ in 0..MOST_UPDATES {
             let before = scenery.terrain.window().counters();
-            scenery.follow(&view, 0.0, to_sun);
+            scenery.follow(&view, 0.0, heavens);
             let after = scenery.terrain.window().counters();
             let still = before.upload_bytes_total == after.upload_bytes_total
                 && (before.shifts, before.switches, before.relights) == (after.shifts, after.switches, after.relights);
@@ -85,19 +90,24 @@ impl Camera {
                 break;
             }
         }
-        self.frame_ms(scenery, to_sun, target).map(|_| ())
+        self.frame_ms(scenery, heavens, target).map(|_| ())
     }
 
     /// Draws a frame; milliseconds until the picture is there.
     ///
     /// # Errors
     /// What the device reports.
-    pub fn frame_ms(&self, scenery: &mut Scenery, to_sun: DVec3, target: &Offscreen) -> Result<f64, Failure> {
+    pub fn frame_ms(
+        &self,
+        scenery: &mut Scenery,
+        heavens: impl Into<Heavens> + Copy,
+        target: &Offscreen,
+    ) -> Result<f64, Failure> {
         let failed = |error: visual::GpuError| Failure::while_doing("drawing a frame", error);
         let start = Instant::now();
         let view = scenery.view(self.eye_m, self.attitude, target.size_px);
-        scenery.follow(&view, 0.0, to_sun);
-        scenery.draw(&view, to_sun, 0.0, Vec::new(), &target.view).map_err(failed)?;
+        scenery.follow(&view, 0.0, heavens);
+        scenery.draw(&view, heavens, 0.0, Vec::new(), &target.view).map_err(failed)?;
         scenery.gpu.wait().map_err(failed)?;
         Ok(start.elapsed().as_secs_f64() * 1e3)
     }

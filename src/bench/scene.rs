@@ -93,12 +93,12 @@ pub fn bench(world: &Arc<World>, views: &Views, load: Load) -> Result<Vec<BenchR
         let camera = Camera { eye_m: place.stand.eye_m, attitude: place.stand.attitude };
         for (scenery, target) in sceneries.iter_mut().zip(&targets) {
             scenery.look.visibility_m = place.visibility_m;
-            camera.settle(scenery, place.stand.to_sun, target)?;
+            camera.settle(scenery, place.stand.heavens, target)?;
         }
         let mut round = vec![Vec::new(); variants.len()];
         for _ in 0..load.rounds {
             for ((scenery, target), round) in sceneries.iter_mut().zip(&targets).zip(&mut round) {
-                round.push(camera.frame_ms(scenery, place.stand.to_sun, target)?);
+                round.push(camera.frame_ms(scenery, place.stand.heavens, target)?);
             }
         }
         for ((sum, worst), round) in times_ms.iter_mut().zip(&mut worst_ms).zip(&round) {

@@ -57,11 +57,11 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
         }
         steps = snapshot.step;
         let view = scenery.view(stage::eye_m(&snapshot), stage::attitude(&snapshot, &head), look.size_px);
-        let to_sun = sun.at(&world, snapshot.date);
-        record.follow(&mut scenery, &view, &snapshot, to_sun);
+        let heavens = sun.at(&world, snapshot.date);
+        record.follow(&mut scenery, &view, &snapshot, heavens);
         let captions = Captions { frame_ms: f64::NAN, ..Captions::default() };
         let hud = stage::hud(&world, &snapshot, &view, &head, captions);
-        scenery.draw(&view, to_sun, snapshot.time_s, hud, &target.view).map_err(device_failed)?;
+        scenery.draw(&view, heavens, snapshot.time_s, hud, &target.view).map_err(device_failed)?;
         scenery.gpu.wait().map_err(device_failed)?;
         record.frame(&scenery, &view, &snapshot, None);
         bar.show((frame + 1) as f64 / frames as f64);

@@ -62,10 +62,10 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
         let frame_start = Instant::now();
         let snapshot = sim.now();
         let view = scenery.view(stage::eye_m(&snapshot), stage::attitude(&snapshot, &head), look.size_px);
-        let to_sun = sun.at(&world, snapshot.date);
-        record.follow(&mut scenery, &view, &snapshot, to_sun);
+        let heavens = sun.at(&world, snapshot.date);
+        record.follow(&mut scenery, &view, &snapshot, heavens);
         let hud = stage::hud(&world, &snapshot, &view, &head, Captions { frame_ms, ..Captions::default() });
-        scenery.draw(&view, to_sun, snapshot.time_s, hud, &target.view).map_err(device_failed)?;
+        scenery.draw(&view, heavens, snapshot.time_s, hud, &target.view).map_err(device_failed)?;
         scenery.gpu.wait().map_err(device_failed)?;
         let took = frame_start.elapsed();
         frame_ms = took.as_secs_f64() * 1e3;

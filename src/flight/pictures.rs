@@ -45,7 +45,7 @@ pub fn take(flown: Scenery, plan: &Plan, date: sim::UtcTime, folder: &Path) -> R
     let target = Offscreen::new(&scenery.gpu, size_px).map_err(device_failed)?;
     let ground = scenery.scene_ground();
     let mut scene = plan.scene(date);
-    let to_sun = Sun::new(&world, date)?.at(&world, date);
+    let heavens = Sun::new(&world, date)?.at(&world, date);
     let head = Head::default();
     let shrink = (COLUMNS * size_px[0]).div_ceil(SHEET_PX).max(1);
     let mut taken = Taken::default();
@@ -57,14 +57,14 @@ pub fn take(flown: Scenery, plan: &Plan, date: sim::UtcTime, folder: &Path) -> R
         let snapshot = sim::lockstep(&mut scene, &ground, 1);
         let view = scenery.view(stage::eye_m(&snapshot), stage::attitude(&snapshot, &head), size_px);
         for _ in 0..MOST_UPDATES {
-            scenery.follow(&view, 0.0, to_sun);
+            scenery.follow(&view, 0.0, heavens);
             if !scenery.terrain.window().is_jumping() && scenery.terrain.window().late_blocks() == 0 {
                 break;
             }
         }
         let captions = Captions { frame_ms: f64::NAN, ..Captions::default() };
         let hud = stage::hud(&world, &snapshot, &view, &head, captions);
-        scenery.draw(&view, to_sun, snapshot.time_s, hud, &target.view).map_err(device_failed)?;
+        scenery.draw(&view, heavens, snapshot.time_s, hud, &target.view).map_err(device_failed)?;
         let picture = target.read(&scenery.gpu).map_err(device_failed)?;
         taken.hash.add(picture.hash());
         taken.files.push(write(&picture, folder, &file_name(number + 1, place))?);

@@ -5,7 +5,7 @@
 use crate::report::{
     self, Adapter, BuildCpuMs, Fly, FrameMs, MemoryBytes, Sim, Terrain, Track, UpdateCpuMs, UploadBytes, quantile,
 };
-use crate::scenery::Scenery;
+use crate::scenery::{Heavens, Scenery};
 use crate::stage::{self, effects::Effects};
 use crate::thread_time;
 use glam::DVec3;
@@ -101,10 +101,10 @@ impl Record {
     }
 
     /// Lets the scenery follow and writes down what that cost this thread.
-    pub fn follow(&mut self, scenery: &mut Scenery, view: &View, snapshot: &Snapshot, to_sun: DVec3) {
+    pub fn follow(&mut self, scenery: &mut Scenery, view: &View, snapshot: &Snapshot, heavens: Heavens) {
         scenery.things.set_particles(self.effects.of(snapshot));
         let before = thread_time::spent();
-        scenery.follow(view, stage::ground_speed_mps(snapshot), to_sun);
+        scenery.follow(view, stage::ground_speed_mps(snapshot), heavens);
         let spent = thread_time::spent().saturating_sub(before);
         if self.frames > 0 {
             self.update_cpu_ms.push(milliseconds(spent));

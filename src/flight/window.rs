@@ -10,7 +10,7 @@ use crate::args::FlyArgs;
 use crate::failure::Failure;
 use crate::output;
 use crate::report::{self, Fly};
-use crate::scenery::{self, Look, Scenery};
+use crate::scenery::{self, Heavens, Look, Scenery};
 use crate::stage::{self, Captions, Sun};
 use sim::input::joystick::Joystick;
 use sim::input::keyboard::Keyboard;
@@ -258,8 +258,8 @@ impl<'a> Cockpit<'a> {
 
         let snapshot = flown.sim.now();
         let view = scenery.view(stage::eye_m(&snapshot), stage::attitude(&snapshot, &self.head), size_px);
-        let to_sun = flown.sun.at(&self.world, snapshot.date);
-        self.record.follow(scenery, &view, &snapshot, to_sun);
+        let heavens = flown.sun.at(&self.world, snapshot.date);
+        self.record.follow(scenery, &view, &snapshot, heavens);
         let hud = if self.hud_shown {
             let slowed = flown.is_slowed(&snapshot);
             let message = self.message.as_ref().filter(|(_, since)| since.elapsed() < MESSAGE);
@@ -272,7 +272,7 @@ impl<'a> Cockpit<'a> {
             Vec::new()
         };
         let picture = self.picture_wanted.then(|| hud.clone());
-        scenery.draw(&view, to_sun, snapshot.time_s, hud, target).map_err(super::device_failed)?;
+        scenery.draw(&view, heavens, snapshot.time_s, hud, target).map_err(super::device_failed)?;
         if let Some(Awaited { since, axis, before }) = self.awaited {
             if axis(&snapshot.controls) != before {
                 self.shown = Some(since);
@@ -292,7 +292,7 @@ impl<'a> Cockpit<'a> {
         if let Some(hud) = picture {
             self.picture_wanted = false;
             let format = *format;
-            self.take_picture(&view, &snapshot, to_sun, hud, format);
+            self.take_picture(&view, &snapshot, heavens, hud, format);
         }
         Ok(if self.is_over() { Flow::Close } else { Flow::Continue })
     }
@@ -302,7 +302,7 @@ impl<'a> Cockpit<'a> {
         &mut self,
         view: &View,
         snapshot: &Snapshot,
-        to_sun: glam::DVec3,
+        heavens: Heavens,
         hud: Vec<Stroke>,
         format: TextureFormat,
     ) {
@@ -312,7 +312,7 @@ impl<'a> Cockpit<'a> {
         let Some(path) = (1..10_000).map(name).find(|path| !path.exists()) else { return };
         let taken = Offscreen::with_format(&scenery.gpu, view.size_px, format)
             .and_then(|target| {
-                scenery.draw(view, to_sun, snapshot.time_s, hud, &target.view)?;
+                scenery.draw(view, heavens, snapshot.time_s, hud, &target.view)?;
                 target.read(&scenery.gpu)
             })
             .map_err(|error| error.to_string())

@@ -27,7 +27,7 @@ pub fn run(args: &ShotArgs, output: Output) -> Result<(), Failure> {
     let at = Standpoint {
         eye_m,
         attitude: still::attitude(&world, eye_m, args.look.azimuth_deg, args.look.elevation_deg),
-        to_sun: scenery.to_sun(args.view.time.unwrap_or_else(|| scenery::default_moment(&world)))?,
+        heavens: scenery.heavens(args.view.time.unwrap_or_else(|| scenery::default_moment(&world)))?,
     };
     let target =
         Offscreen::new(&scenery.gpu, look.size_px).map_err(|error| Failure::while_doing("taking a picture", error))?;

@@ -335,6 +335,7 @@ fn picture(
     let Some(gpu) = gpu_proof::device() else { return Ok(Due::default()) };
     let scene = Scene {
         sun_direction: scenery::to_sun(world, scenery::default_moment(world))?,
+        moon_direction: None,
         visibility_m: f64::MAX,
         haze_base_m: world.info.statistics.min_m.max(0.0),
         ..Scene::default()

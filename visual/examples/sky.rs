@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let air = visual::sky::Air::new(60_000.0, 1_600.0);
         air_ms = air_ms.min(start.elapsed().as_secs_f64() * 1e3);
         let start = Instant::now();
-        std::hint::black_box(air.light(0.4, 3_000.0));
+        std::hint::black_box(air.light(0.4, visual::moon::Moonlight::default(), 3_000.0));
         table_ms = table_ms.min(start.elapsed().as_secs_f64() * 1e3);
     }
     println!("least of 9: air {air_ms:.1} ms, sky table {table_ms:.1} ms");

@@ -22,6 +22,8 @@ pub struct Frame {
 pub struct Scene {
     /// Unit vector towards the sun, world axes (already turned by the grid's convergence).
     pub sun_direction: DVec3,
+    /// Unit vector towards the moon, world axes; none where there is no moon. Its phase follows from the sun's place.
+    pub moon_direction: Option<DVec3>,
     /// Distance at which a dark object on the level at `haze_base_m` has 2 % contrast (Koschmieder), metres.
     pub visibility_m: f64,
     /// Height above sea level that `visibility_m` holds at: the lowest ground of the scene, metres.
@@ -39,6 +41,7 @@ impl Default for Scene {
     fn default() -> Self {
         Self {
             sun_direction: terrain::frame::direction(std::f64::consts::PI, 40_f64.to_radians()),
+            moon_direction: None,
             visibility_m: 60_000.0,
             haze_base_m: 0.0,
             view_range_m: 66_000.0,
@@ -61,9 +64,10 @@ impl Scene {
         let or = |value: f64, fallback: f64| if value.is_finite() { value } else { fallback };
         let fallback = Self::default();
         let sun = self.sun_direction;
-        let sun_usable = sun.is_finite() && (1e-6..1e6).contains(&sun.length());
+        let usable = |towards: DVec3| towards.is_finite() && (1e-6..1e6).contains(&towards.length());
         Self {
-            sun_direction: if sun_usable { sun.normalize() } else { fallback.sun_direction },
+            sun_direction: if usable(sun) { sun.normalize() } else { fallback.sun_direction },
+            moon_direction: self.moon_direction.filter(|moon| usable(*moon)).map(DVec3::normalize),
             visibility_m: or(self.visibility_m, fallback.visibility_m).clamp(100.0, 300_000.0),
             haze_base_m: or(self.haze_base_m, 0.0).clamp(-12_000.0, 9_000.0),
             view_range_m: or(self.view_range_m, fallback.view_range_m).clamp(1_000.0, 1e7),

@@ -12,6 +12,7 @@ pub mod frame;
 mod glyphs;
 pub mod gpu;
 pub mod models;
+pub mod moon;
 pub mod particles;
 pub mod passes;
 pub mod proof;

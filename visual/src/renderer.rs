@@ -15,6 +15,7 @@ use crate::passes::TargetFormat;
 use crate::passes::lines::LinesPass;
 use crate::passes::sky::SkyPass;
 use crate::passes::upscale::UpscalePass;
+use crate::sky::HazeGrade;
 use crate::sky_feed::SkyFeed;
 use crate::uniforms::{FrameBindings, FrameUniforms};
 
@@ -30,11 +31,13 @@ pub struct Settings {
     /// Sky tables are computed by a thread of their own and arrive a few frames late; false waits for each, so that
     /// the same frames give the same pictures.
     pub sky_in_background: bool,
+    /// How light scattered on the way from the ground is found.
+    pub haze: HazeGrade,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { msaa: 1, render_scale: 1.0, keep_depth: false, sky_in_background: false }
+        Self { msaa: 1, render_scale: 1.0, keep_depth: false, sky_in_background: false, haze: HazeGrade::Table }
     }
 }
 
@@ -105,7 +108,7 @@ impl Renderer {
             sky: SkyPass::new(device, &bindings.layout, scene),
             lines: LinesPass::new(device, if small { last } else { scene }),
             upscale: small.then(|| UpscalePass::new(device, last)),
-            feed: SkyFeed::new(settings.sky_in_background),
+            feed: SkyFeed::new(settings.sky_in_background, settings.haze),
             bindings,
             targets: Vec::new(),
         }
@@ -222,7 +225,7 @@ impl Renderer {
         let about = SceneView { index, view: &safe, target_px: targets.scene_px, frame_group: &frame_group };
         draw(&about, Layer::Solid, &mut pass);
         pass.set_bind_group(0, &frame_group, &[]);
-        self.sky.draw(&mut pass);
+        self.sky.draw(&mut pass, uniforms.moon_radius_rad > 0.0);
         draw(&about, Layer::Blended, &mut pass);
         pass.set_bind_group(0, &frame_group, &[]);
         if targets.small.is_none() && index == 0 {

@@ -7,6 +7,7 @@
 pub const SOURCES: &[(&str, &str)] = &[
     ("canopy.wgsl", include_str!("../../shaders/canopy.wgsl")),
     ("heights.wgsl", include_str!("../../shaders/heights.wgsl")),
+    ("lights.wgsl", include_str!("../../shaders/lights.wgsl")),
     ("lines.wgsl", include_str!("../../shaders/lines.wgsl")),
     ("plants.wgsl", include_str!("../../shaders/plants.wgsl")),
     ("overlay.wgsl", include_str!("../../shaders/overlay.wgsl")),

@@ -1,12 +1,13 @@
 //! The light of the sky and of the sun, computed on the processor from one model of the air.
 //!
 //! The air is a sphere of three substances: molecules (Rayleigh, scale height 8 km above sea level), haze (Mie, scale
-//! height [`HAZE_SCALE_HEIGHT_M`] above the scene's haze base, its amount set by the visibility) and ozone. The same
+//! height [`haze_scale_m`] above the scene's haze base, its amount set by the visibility) and ozone. The same
 //! figures go to the shaders for the haze before the ground ([`crate::uniforms::FrameUniforms`]), so sky and haze agree.
 //!
 //! [`Air::new`] prepares what depends on the air alone: transmittance and an estimate of multiple scattering.
 //! [`Air::light`] integrates single scattering with 40 steps a ray, spaced by squares from the eye, analytic within
 //! a step, and adds the estimate: every order after the first taken as isotropic and summed as a geometric series.
+//! By night the moon does the same, its light spread evenly over the azimuths so that the table stays symmetric.
 //! The table covers elevations from the horizon up, half the azimuths (it is symmetric about the sun); whatever looks
 //! below the horizon takes the horizon's value, so ground that fades into it meets the sky without a rim.
 //!
@@ -17,6 +18,13 @@
 //! scattering); S. Hillaire, A scalable and production ready sky and atmosphere rendering technique, 2020 (series and
 //! coefficients); E. Bruneton, Precomputed atmospheric scattering, 2017 (table axes); H. Koschmieder, 1924 (visibility).
 
+mod aerial;
+mod haze_error;
+
+pub use aerial::{AERIAL_SIZE, HazeGrade};
+pub use haze_error::{HazeError, haze_error};
+
+use crate::moon::Moonlight;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
@@ -24,17 +32,24 @@ use std::f32::consts::{PI, TAU};
 pub const TABLE_WIDTH: u32 = 128;
 /// Rows of the sky table: square root of the sine of the elevation, 0 at the horizon, 1 straight up.
 pub const TABLE_HEIGHT: u32 = 64;
-/// Steps of one ray of the table.
+/// Steps of one ray of the table, by day.
 pub const RAY_STEPS: usize = 40;
-/// Height over which haze thins by a factor e, metres: between 1.2 km (clean sea-level air) and the 3 km and more of a
-/// well mixed summer layer over dry land.
-pub const HAZE_SCALE_HEIGHT_M: f32 = 2_000.0;
+/// Height over which haze thins by a factor e in good visibility, metres: between 1.2 km (clean sea-level air) and the
+/// 3 km and more of a well mixed summer layer over dry land.
+const HAZE_SCALE_M: f32 = 2_000.0;
+/// The same in fog: a layer that one looks out of from a few hundred metres up (radiation fog is 15 to 300 m deep).
+const FOG_SCALE_M: f32 = 100.0;
+/// Visibilities between which a fog becomes a haze, metres: the definition of fog, and of haze that is no longer mist.
+const FOG_TO_HAZE_M: [f64; 2] = [1_000.0, 8_000.0];
 /// Height over which molecules thin by a factor e, metres.
 pub const MOLECULE_SCALE_HEIGHT_M: f32 = 8_000.0;
 /// Scattering by molecules at sea level, per metre, for red, green, blue.
 pub const MOLECULES_PER_M: Vec3 = Vec3::new(5.802e-6, 13.558e-6, 33.1e-6);
 /// Optical depth at which contrast is 2 %.
 pub const KOSCHMIEDER: f32 = 3.912;
+
+/// Shares of red, green and blue in luminance (IEC 61966-2-1).
+const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
 const OZONE_PER_M: Vec3 = Vec3::new(0.650e-6, 1.881e-6, 0.085e-6);
 const HAZE_ALBEDO: f32 = 0.9;
@@ -46,8 +61,18 @@ const AIR_M: f32 = 100_000.0;
 const HIGHEST_EYE_M: f32 = 60_000.0;
 const GROUND_ALBEDO: f32 = 0.3;
 /// Starlight and airglow, far above nature's so that a screen can show it.
-const NIGHT: Vec3 = Vec3::new(2.4e-6, 3.5e-6, 6.5e-6);
-/// Sunlit ground is lit as seen from this far above the haze base, metres.
+const NIGHT: Vec3 = Vec3::new(1.5e-6, 2.1e-6, 3.6e-6);
+/// What the ground gets by night beside that: the eye adapted to the dark sees the ground, a screen's black would not show it.
+const NIGHT_GROUND: Vec3 = Vec3::new(2.4e-5, 3.0e-5, 4.2e-5);
+/// Irradiance by the full moon above the air, above nature's 2e-6 as [`NIGHT`] is but less so; bluish, as an eye sees it
+/// that has few cones left.
+const FULL_MOON: Vec3 = Vec3::new(1.25e-4, 1.5e-4, 1.9e-4);
+/// Radiance of the full moon's disc: nature's (0.25 lux of the sun's 133,000 over 6.4e-5 sr).
+const MOON_RADIANCE: f32 = 0.03;
+/// Illuminance by the sun above the air, lux: what an irradiance of 1 is (683 lm/W, 98 lm/W of 1,361 W/m2).
+pub const SUN_LUX: f32 = 133_000.0;
+/// Sunlit ground is lit as seen from this far above the haze base, metres; in fog from half its scale, or from the eye
+/// above it: what an eye above a fog sees of the ground stands out of it.
 const SURFACE_ABOVE_BASE_M: f32 = 1_000.0;
 
 const SUN_COLUMNS: usize = 128;
@@ -60,6 +85,7 @@ const ORDERS_ROWS: usize = 12;
 pub struct Air {
     base_m: f32,
     haze_per_m: f32,
+    haze_scale_m: f32,
     /// What is left of sunlight, by height and sun.
     sunlight: Vec<Vec3>,
     /// Radiance scattered into any direction by all orders after the first, per unit of scattering, by height and sun.
@@ -77,8 +103,36 @@ pub struct Light {
     pub sky_irradiance: Vec3,
     /// Colour of the sun's disc seen from the eye, brightest channel 1; zero where the planet hides it.
     pub disc: Vec3,
+    /// Irradiance by the moon on a surface turned to it, near the ground.
+    pub moon_irradiance: Vec3,
+    /// Radiance of the moon's lit side seen from the eye, by the strength of its light.
+    pub moon_disc: Vec3,
+    /// What night and moon add to the radiance at the horizon, the one thing here that is not exposed.
+    pub night_haze: Vec3,
+    /// Aerial table, [`AERIAL_SIZE`] texels of four 16-bit floats; empty where there is none.
+    pub aerial: Vec<u16>,
     /// What all of the above is multiplied by already.
     pub exposure: f32,
+    /// Least illuminance that makes a point of light seen by an eye adapted to this, lux.
+    pub threshold_lux: f32,
+}
+
+impl Light {
+    /// No light at all, not exposed.
+    pub fn none() -> Self {
+        Self {
+            table: Vec::new(),
+            sun_irradiance: Vec3::ZERO,
+            sky_irradiance: Vec3::ZERO,
+            disc: Vec3::ZERO,
+            moon_irradiance: Vec3::ZERO,
+            moon_disc: Vec3::ZERO,
+            night_haze: Vec3::ZERO,
+            aerial: Vec::new(),
+            exposure: 1.0,
+            threshold_lux: threshold_lux(Vec3::ZERO),
+        }
+    }
 }
 
 /// One step of a ray, without what depends on the azimuth.
@@ -98,6 +152,7 @@ impl Air {
         let mut air = Self {
             base_m: haze_base_m as f32,
             haze_per_m: haze_per_m(visibility_m, haze_base_m),
+            haze_scale_m: haze_scale_m(visibility_m),
             sunlight: Vec::new(),
             orders: Vec::new(),
         };
@@ -106,28 +161,44 @@ impl Air {
         air
     }
 
-    /// Light for a sun elevation (radians) and an eye's altitude above sea level (metres).
-    pub fn light(&self, sun_elevation_rad: f64, eye_altitude_m: f64) -> Light {
+    /// Light for a sun elevation (radians), a moon and an eye's altitude above sea level (metres).
+    pub fn light(&self, sun_elevation_rad: f64, moon: Moonlight, eye_altitude_m: f64) -> Light {
         let (sun_sin, sun_cos) = (sun_elevation_rad as f32).sin_cos();
         let sun = Vec3::new(sun_cos, sun_sin, 0.0);
         let eye_m = (eye_altitude_m as f32).clamp(10.0, HIGHEST_EYE_M);
-        let surface_m = (self.base_m + SURFACE_ABOVE_BASE_M).clamp(10.0, HIGHEST_EYE_M);
+        let least_m = SURFACE_ABOVE_BASE_M.min(0.5 * self.haze_scale_m);
+        let above_m = (eye_m - self.base_m).clamp(least_m, SURFACE_ABOVE_BASE_M);
+        let surface_m = (self.base_m + above_m).clamp(10.0, HIGHEST_EYE_M);
+        let moon_sin = moon.elevation_rad.sin() as f32;
+        let moon_above = FULL_MOON * moon.share as f32;
 
         let sun_irradiance = self.sunlight_at(surface_m, sun_sin);
-        let sky_irradiance = self.sky_irradiance(surface_m, sun);
-        let exposure = exposure(sun_irradiance * sun_sin.max(0.6) + sky_irradiance);
+        let moon_irradiance = self.sunlight_at(surface_m, moon_sin) * moon_above;
+        let moonlit = |height_m, elevation_sin, steps| {
+            if moon.share > 0.0 {
+                self.moonlit(&self.ray(height_m, elevation_sin, steps), elevation_sin, moon)
+            } else {
+                Vec3::ZERO
+            }
+        };
+        let sky_irradiance = self.sky_irradiance(surface_m, sun) + NIGHT_GROUND + moonlit(surface_m, 0.7, 20) * PI;
+        let all = sun_irradiance * sun_sin.max(0.6) + sky_irradiance + moon_irradiance * moon_sin.max(0.0);
+        let exposure = exposure(all);
 
+        // The edge of the Earth's shadow falls between steps: more of them make it smooth.
+        let steps = if sun_sin < 0.05 { 3 * RAY_STEPS } else { RAY_STEPS };
         let mut table = Vec::with_capacity((TABLE_WIDTH * TABLE_HEIGHT * 4) as usize);
         for row in 0..TABLE_HEIGHT {
             let elevation_sin = (row as f32 / (TABLE_HEIGHT - 1) as f32).powi(2);
             let level = (1.0 - elevation_sin * elevation_sin).max(0.0).sqrt();
-            let ray = self.ray(eye_m, elevation_sin, RAY_STEPS);
+            let ray = self.ray(eye_m, elevation_sin, steps);
+            let moonlit = if moon.share > 0.0 { self.moonlit(&ray, elevation_sin, moon) } else { Vec3::ZERO };
             for column in 0..TABLE_WIDTH {
                 let half_sin = column as f32 / (TABLE_WIDTH - 1) as f32;
                 let azimuth_cos = 1.0 - 2.0 * half_sin * half_sin;
                 let azimuth_sin = (1.0 - azimuth_cos * azimuth_cos).max(0.0).sqrt();
                 let direction = Vec3::new(level * azimuth_cos, elevation_sin, level * azimuth_sin);
-                let radiance = self.gather(&ray, direction, sun) * exposure;
+                let radiance = (self.gather(&ray, direction, sun) + moonlit) * exposure;
                 table.extend([radiance.x, radiance.y, radiance.z, 1.0].map(half));
             }
         }
@@ -139,7 +210,13 @@ impl Air {
             sun_irradiance: sun_irradiance * exposure,
             sky_irradiance: sky_irradiance * exposure,
             disc,
+            moon_irradiance: moon_irradiance * exposure,
+            // Beyond 3 the display is white.
+            moon_disc: self.sunlight_at(eye_m, moon_sin) * (MOON_RADIANCE * exposure).min(3.0),
+            night_haze: NIGHT * 2.5 + moonlit(eye_m, 0.0, RAY_STEPS),
+            aerial: Vec::new(),
             exposure,
+            threshold_lux: threshold_lux(all),
         }
     }
 
@@ -168,6 +245,12 @@ impl Air {
 
     /// Sky radiance along a ray in the direction whose steps are given, the sun being in the x-y plane.
     fn gather(&self, ray: &[Step], direction: Vec3, sun: Vec3) -> Vec3 {
+        // Airglow is seen through more air, and so brighter, near the horizon.
+        self.scattered(ray, direction, sun) + NIGHT * (1.0 + 1.5 * (1.0 - direction.y.max(0.0)).powi(4))
+    }
+
+    /// The part of it that comes from the sun.
+    fn scattered(&self, ray: &[Step], direction: Vec3, sun: Vec3) -> Vec3 {
         let cosine = direction.dot(sun);
         let (molecule_phase, haze_phase) = (rayleigh_phase(cosine), henyey_greenstein(cosine));
         // Cosine of the azimuth from the sun, times the cosine of the sun's elevation.
@@ -181,8 +264,20 @@ impl Air {
                 + (step.molecules + step.haze) * self.orders_at(step.height_m, sun_sin);
             sum += step.weight * source;
         }
-        // Airglow is seen through more air, and so brighter, near the horizon.
-        sum + NIGHT * (1.0 + 1.5 * (1.0 - direction.y).powi(4))
+        sum
+    }
+
+    /// Radiance of moonlit air along a ray that rises by a sine, the mean over the azimuths of the moon.
+    fn moonlit(&self, ray: &[Step], elevation_sin: f32, moon: Moonlight) -> Vec3 {
+        const SPOKES: usize = 4;
+        let (sin, cos) = (moon.elevation_rad as f32).sin_cos();
+        let level = (1.0 - elevation_sin * elevation_sin).max(0.0).sqrt();
+        let around = (0..SPOKES).map(|spoke| {
+            let (azimuth_sin, azimuth_cos) = (PI * (spoke as f32 + 0.5) / SPOKES as f32).sin_cos();
+            let direction = Vec3::new(level * azimuth_cos, elevation_sin, level * azimuth_sin);
+            self.scattered(ray, direction, Vec3::new(cos, sin, 0.0))
+        });
+        around.sum::<Vec3>() / SPOKES as f32 * FULL_MOON * moon.share as f32
     }
 
     fn sky_irradiance(&self, height_m: f32, sun: Vec3) -> Vec3 {
@@ -206,7 +301,7 @@ impl Air {
     fn substance(&self, height_m: f32) -> (Vec3, Vec3, Vec3) {
         let height_m = height_m.max(0.0);
         let molecules = MOLECULES_PER_M * (-height_m / MOLECULE_SCALE_HEIGHT_M).exp();
-        let haze = self.haze_per_m * (-(height_m - self.base_m).max(0.0) / HAZE_SCALE_HEIGHT_M).exp();
+        let haze = self.haze_per_m * (-(height_m - self.base_m).max(0.0) / self.haze_scale_m).exp();
         let ozone = OZONE_PER_M * (1.0 - (height_m - 25_000.0).abs() / 15_000.0).max(0.0);
         (molecules, Vec3::splat(haze * HAZE_ALBEDO), molecules + Vec3::splat(haze) + ozone)
     }
@@ -309,16 +404,47 @@ pub fn haze_per_m(visibility_m: f64, haze_base_m: f64) -> f32 {
     (KOSCHMIEDER / visibility_m as f32 - molecules_at(haze_base_m as f32)).max(1e-6)
 }
 
+/// Height over which haze thins by a factor e in a visibility, metres: a fog is shallow, a haze deep. Even in logarithms.
+pub fn haze_scale_m(visibility_m: f64) -> f32 {
+    let [fog_m, haze_m] = FOG_TO_HAZE_M;
+    let share = ((visibility_m / fog_m).ln() / (haze_m / fog_m).ln()).clamp(0.0, 1.0) as f32;
+    FOG_SCALE_M * (HAZE_SCALE_M / FOG_SCALE_M).powf(share)
+}
+
+/// Share of fog in a visibility: 1 in fog, 0 in haze and clear air, as [`haze_scale_m`] goes.
+pub fn fog_share(visibility_m: f64) -> f64 {
+    let [fog_m, haze_m] = FOG_TO_HAZE_M;
+    1.0 - ((visibility_m / fog_m).ln() / (haze_m / fog_m).ln()).clamp(0.0, 1.0)
+}
+
+/// Share of a town's lamps that are lit under a sun at an elevation, radians: they come on one after another about two
+/// degrees under the horizon.
+pub fn lamps(sun_elevation_rad: f64) -> f32 {
+    ((-1.5 - sun_elevation_rad.to_degrees()) / 1.5).clamp(0.0, 1.0) as f32
+}
+
+/// Least illuminance at the eye that makes a point of light seen before a background lit by an irradiance, lux.
+///
+/// Source: ICAO Annex 3, attachment D: log10 E = 0.57 log10 B + 0.05 (log10 B)^2 - 6.66, B the luminance in cd/m2; by night
+/// not below IALA's 2e-7 lux (recommendation R0202).
+pub fn threshold_lux(irradiance: Vec3) -> f32 {
+    const ALBEDO: f32 = 0.25;
+    let luminance = irradiance.dot(LUMINANCE) * SUN_LUX * ALBEDO / PI;
+    let b = luminance.max(1e-3).log10();
+    10f32.powf(0.57 * b + 0.05 * b * b - 6.66).clamp(2e-7, 1e-2)
+}
+
 /// Extinction of green light by molecules at a height, per metre.
 pub fn molecules_at(height_m: f32) -> f32 {
     MOLECULES_PER_M.y * (-height_m.max(0.0) / MOLECULE_SCALE_HEIGHT_M).exp()
 }
 
-/// Exposure for an irradiance on ground that faces the light somewhat: the eye adapts to most of a change, not to
-/// all, so night stays dark.
+/// Exposure for an irradiance on ground that faces the light somewhat: the eye adapts to most of a change, not to all, so
+/// night stays dark; to nearly all of it from deep dusk on, so night stays readable.
 pub fn exposure(irradiance: Vec3) -> f32 {
-    let luminance = irradiance.dot(Vec3::new(0.2126, 0.7152, 0.0722)).max(1e-7);
-    3.1 * luminance.powf(-0.6)
+    const DEEP_DUSK: f32 = 0.01;
+    let luminance = irradiance.dot(LUMINANCE).max(1e-7);
+    3.1 * luminance.max(DEEP_DUSK).powf(-0.6) * (luminance / DEEP_DUSK).min(1.0).powf(-0.93)
 }
 
 fn rayleigh_phase(cosine: f32) -> f32 {
@@ -454,7 +580,7 @@ mod tests {
         let air = Air::new(40_000.0, 0.0);
         let mut last = f32::INFINITY;
         for sun_deg in [80.0_f64, 30.0, 5.0, 0.0, -3.0, -8.0, -30.0] {
-            let light = air.light(sun_deg.to_radians(), 1_000.0);
+            let light = air.light(sun_deg.to_radians(), Moonlight::default(), 1_000.0);
             assert!(light.table.iter().all(|&bits| bits < 0x7bff), "sun {sun_deg}");
             let given = (light.sky_irradiance + light.sun_irradiance * sun_deg.to_radians().sin().max(0.0) as f32)
                 / light.exposure;
@@ -463,7 +589,7 @@ mod tests {
             last = given.y;
         }
         // Clear sky, high sun: the sky gives a tenth to a third of what the sun gives (Iqbal 1983: diffuse share).
-        let noon = air.light(60_f64.to_radians(), 0.0);
+        let noon = air.light(60_f64.to_radians(), Moonlight::default(), 0.0);
         let share = noon.sky_irradiance.y / (noon.sun_irradiance.y * 60_f32.to_radians().sin());
         assert!((0.08..0.35).contains(&share), "{share}");
         // The zenith is blue.

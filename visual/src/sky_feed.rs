@@ -4,7 +4,8 @@
 //! thread and taken over when ready; otherwise the caller waits (a few milliseconds in a release build).
 
 use crate::frame::Scene;
-use crate::sky::{Air, Light};
+use crate::moon::Moonlight;
+use crate::sky::{Air, HazeGrade, Light};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
@@ -19,13 +20,31 @@ struct Wanted {
     altitude_m: f64,
     visibility_m: f64,
     haze_base_m: f64,
+    moon: Moonlight,
+    haze: HazeGrade,
+    view_range_m: f64,
 }
+
+/// Elevation of the moon that is passed over, radians.
+const MOON_STEP_RAD: f64 = 1.0 * std::f64::consts::PI / 180.0;
+/// Share of the full moon's light that is passed over.
+const MOON_STEP: f64 = 0.01;
+/// The moon's light is nothing beside a sun above this elevation, radians.
+const MOON_DARK_RAD: f64 = -1.0 * std::f64::consts::PI / 180.0;
 
 impl Wanted {
     fn near(&self, other: &Self) -> bool {
         (self.sun_elevation_rad - other.sun_elevation_rad).abs() <= SUN_STEP_RAD
-            && (self.altitude_m - other.altitude_m).abs() <= ALTITUDE_STEP_M
+            && (self.altitude_m - other.altitude_m).abs() <= other.altitude_step_m()
+            && (self.moon.elevation_rad - other.moon.elevation_rad).abs() <= MOON_STEP_RAD
+            && (self.moon.share - other.moon.share).abs() <= MOON_STEP
+            && self.view_range_m == other.view_range_m
             && self.same_air(other)
+    }
+
+    /// In thin fog a smaller step is seen.
+    fn altitude_step_m(&self) -> f64 {
+        ALTITUDE_STEP_M.min(0.2 * f64::from(crate::sky::haze_scale_m(self.visibility_m)))
     }
 
     fn same_air(&self, other: &Self) -> bool {
@@ -36,14 +55,15 @@ impl Wanted {
 /// The light in use and the one being made.
 pub struct SkyFeed {
     in_background: bool,
+    haze: HazeGrade,
     current: Option<(Wanted, Arc<Air>, Light)>,
     coming: Option<Receiver<(Wanted, Arc<Air>, Light)>>,
 }
 
 impl SkyFeed {
     /// An empty feed; the first [`SkyFeed::update`] always waits.
-    pub fn new(in_background: bool) -> Self {
-        Self { in_background, current: None, coming: None }
+    pub fn new(in_background: bool, haze: HazeGrade) -> Self {
+        Self { in_background, haze, current: None, coming: None }
     }
 
     /// The light in use.
@@ -58,6 +78,9 @@ impl SkyFeed {
             altitude_m: if altitude_m.is_finite() { altitude_m.clamp(0.0, 60_000.0) } else { 0.0 },
             visibility_m: scene.visibility_m,
             haze_base_m: scene.haze_base_m,
+            moon: if scene.sun_elevation_rad() < MOON_DARK_RAD { Moonlight::of(scene) } else { Moonlight::default() },
+            haze: self.haze,
+            view_range_m: scene.view_range_m,
         };
         let mut changed = false;
         if let Some(coming) = &self.coming {
@@ -94,7 +117,10 @@ impl SkyFeed {
 
 fn make(wanted: Wanted, air: Option<Arc<Air>>) -> (Wanted, Arc<Air>, Light) {
     let air = air.unwrap_or_else(|| Arc::new(Air::new(wanted.visibility_m, wanted.haze_base_m)));
-    let light = air.light(wanted.sun_elevation_rad, wanted.altitude_m);
+    let mut light = air.light(wanted.sun_elevation_rad, wanted.moon, wanted.altitude_m);
+    if wanted.haze == HazeGrade::Table {
+        light.aerial = air.aerial(&light, wanted.sun_elevation_rad, wanted.altitude_m, wanted.view_range_m);
+    }
     (wanted, air, light)
 }
 
@@ -104,7 +130,7 @@ mod tests {
 
     #[test]
     fn light_is_remade_only_when_something_moved() {
-        let mut feed = SkyFeed::new(false);
+        let mut feed = SkyFeed::new(false, HazeGrade::Table);
         let mut scene = Scene::default();
         assert!(feed.update(&scene, 1_000.0));
         assert!(!feed.update(&scene, 1_000.0 + 0.9 * ALTITUDE_STEP_M));

@@ -59,15 +59,8 @@ pub struct SunPosition {
 /// # Errors
 /// [`SunError::Place`] for a place that is none, [`SunError::Moment`] where the method refuses.
 pub fn position(unix_s: f64, latitude_deg: f64, longitude_deg: f64) -> Result<SunPosition, SunError> {
-    if !(-90.0..=90.0).contains(&latitude_deg) || !(-180.0..=180.0).contains(&longitude_deg) {
-        return Err(SunError::Place { latitude_deg, longitude_deg });
-    }
+    let year = checked_year(unix_s, latitude_deg, longitude_deg)?;
     let refused = |reason: String| SunError::Moment { unix_s, reason };
-    // Years beyond these have no difference between universal and terrestrial time that one could rely on.
-    let year = 1970.0 + unix_s / 31_556_952.0;
-    if !(1600.0..3000.0).contains(&year) {
-        return Err(refused("expected a year of 1600 to 2999".into()));
-    }
     let delta_t_s = delta_t::estimate(year).map_err(|error| refused(error.to_string()))?;
     let time =
         JulianDate::new(unix_s / 86_400.0 + 2_440_587.5, delta_t_s).map_err(|error| refused(error.to_string()))?;
@@ -78,6 +71,19 @@ pub fn position(unix_s: f64, latitude_deg: f64, longitude_deg: f64) -> Result<Su
         true_azimuth_rad: found.azimuth().to_radians(),
         elevation_rad: found.elevation_angle().to_radians(),
     })
+}
+
+/// The year of a moment, with its fraction, where moment and place are such that one can rely on an answer.
+pub(crate) fn checked_year(unix_s: f64, latitude_deg: f64, longitude_deg: f64) -> Result<f64, SunError> {
+    if !(-90.0..=90.0).contains(&latitude_deg) || !(-180.0..=180.0).contains(&longitude_deg) {
+        return Err(SunError::Place { latitude_deg, longitude_deg });
+    }
+    // Years beyond these have no difference between universal and terrestrial time that one could rely on.
+    let year = 1970.0 + unix_s / 31_556_952.0;
+    match (1600.0..3000.0).contains(&year) {
+        true => Ok(year),
+        false => Err(SunError::Moment { unix_s, reason: "expected a year of 1600 to 2999".into() }),
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! What every shader knows of the frame: group 0 of every pipeline, for the vertex and the fragment stage.
 //!
 //! [`FrameUniforms`] mirrors `shaders/shared/frame.wgsl` field by field; `tests/shader_contract.rs` compares the
-//! offsets. Binding 0 is the uniforms, 1 the sky table, 2 its sampler.
+//! offsets. Binding 0 is the uniforms, 1 the sky table, 2 its sampler, 3 the
+//! aerial table.
 
 use crate::camera::View;
 use crate::frame::Scene;
@@ -35,11 +36,11 @@ pub struct FrameUniforms {
     pub ray_down: [f32; 3],
     /// Pixels of the scene's target per unit of tangent, vertically.
     pub focal_px: f32,
-    /// Unit vector towards the sun.
+    /// Unit vector towards the key light: the sun, or the moon where that gives more.
     pub sun_direction: [f32; 3],
     /// Half the angle of the sun's disc, radians.
     pub sun_radius_rad: f32,
-    /// Irradiance by the sun on a surface turned to it, near the ground.
+    /// Irradiance by the key light on a surface turned to it, near the ground.
     pub sun_irradiance: [f32; 3],
     /// Extinction of green light by molecules at sea level, per metre.
     pub molecules_per_m: f32,
@@ -63,6 +64,30 @@ pub struct FrameUniforms {
     pub eye_molecules: f32,
     /// Density of haze at the eye, 1 at the haze base.
     pub eye_haze: f32,
+    /// Unit vector towards the sun itself.
+    pub disc_direction: [f32; 3],
+    /// Least illuminance that makes a point of light seen, lux.
+    pub threshold_lux: f32,
+    /// Unit vector towards the moon.
+    pub moon_direction: [f32; 3],
+    /// Half the angle of the moon's disc, radians; 0 where there is no moon or it is down.
+    pub moon_radius_rad: f32,
+    /// Unit vector from the moon to the sun.
+    pub moon_to_sun: [f32; 3],
+    /// 1 where the moon is the key light.
+    pub moon_key: f32,
+    /// Radiance of the moon's lit side as the eye sees it.
+    pub moon_light: [f32; 3],
+    /// Height over which haze thins by a factor e, metres.
+    pub haze_scale_m: f32,
+    /// Greatest distance of the aerial table, metres; 0 where there is none.
+    pub aerial_reach_m: f32,
+    /// Share of a town's lamps that are lit.
+    pub lamps: f32,
+    /// Of the moon's light, by phase.
+    pub moon_share: f32,
+    /// Of the sun's own elevation.
+    pub sun_sin: f32,
 }
 
 impl FrameUniforms {
@@ -75,6 +100,14 @@ impl FrameUniforms {
         let sun = scene.sun_direction.as_vec3();
         let sun_level = Vec2::new(sun.x, sun.z).try_normalize().unwrap_or(Vec2::X);
         let target = [target_px[0] as f32, target_px[1] as f32];
+        let haze_scale_m = sky::haze_scale_m(scene.visibility_m);
+        let to_moon = scene.moon_direction.unwrap_or(DVec3::NEG_Y);
+        let moonlight = crate::moon::Moonlight::of(scene);
+        let moon_is_key = light.moon_irradiance.element_sum() > light.sun_irradiance.element_sum();
+        let (key, key_irradiance) =
+            if moon_is_key { (to_moon.as_vec3(), light.moon_irradiance) } else { (sun, light.sun_irradiance) };
+        // Half a degree below the horizon its last limb is gone; an eye on a mountain may see it a little longer.
+        let moon_is_up = scene.moon_direction.is_some() && to_moon.y > -0.02;
         Self {
             clip_from_relative: view.clip_from_relative().to_cols_array_2d(),
             eye_high_m: eye_high_m.to_array(),
@@ -87,9 +120,9 @@ impl FrameUniforms {
             near_m: view.near_m as f32,
             ray_down: (view.ray(0.0, 1.0) - corner).as_vec3().to_array(),
             focal_px: target[1] / (view.top - view.bottom) as f32,
-            sun_direction: sun.to_array(),
+            sun_direction: key.to_array(),
             sun_radius_rad: 0.004_65,
-            sun_irradiance: light.sun_irradiance.to_array(),
+            sun_irradiance: key_irradiance.to_array(),
             molecules_per_m: sky::MOLECULES_PER_M.y,
             sky_irradiance: light.sky_irradiance.to_array(),
             haze_per_m: sky::haze_per_m(scene.visibility_m, scene.haze_base_m),
@@ -100,7 +133,19 @@ impl FrameUniforms {
             fade_start_m: 0.85 * scene.view_range_m as f32,
             fade_end_m: scene.view_range_m as f32,
             eye_molecules: (-scales(eye_altitude_m, 0.0, sky::MOLECULE_SCALE_HEIGHT_M)).exp(),
-            eye_haze: (-scales(eye_altitude_m, haze_base_m, sky::HAZE_SCALE_HEIGHT_M)).exp(),
+            eye_haze: (-scales(eye_altitude_m, haze_base_m, haze_scale_m)).exp(),
+            disc_direction: sun.to_array(),
+            threshold_lux: light.threshold_lux,
+            moon_direction: to_moon.as_vec3().to_array(),
+            moon_radius_rad: if moon_is_up { 0.004_52 } else { 0.0 },
+            moon_to_sun: crate::moon::to_sun_from_moon(scene.sun_direction, to_moon).as_vec3().to_array(),
+            moon_key: f32::from(u8::from(moon_is_key)),
+            moon_light: light.moon_disc.to_array(),
+            haze_scale_m,
+            aerial_reach_m: if light.aerial.is_empty() { 0.0 } else { scene.view_range_m as f32 },
+            lamps: sky::lamps(scene.sun_elevation_rad()),
+            moon_share: moonlight.share as f32,
+            sun_sin: scene.sun_direction.y as f32,
         }
     }
 
@@ -108,7 +153,7 @@ impl FrameUniforms {
     pub fn haze_from_eye(&self, relative_m: Vec3) -> f32 {
         let (eye_m, point_m) = (self.eye_altitude_m, self.eye_altitude_m + relative_m.y);
         let mean = |base_m, scale_m| mean_density(scales(eye_m, base_m, scale_m), scales(point_m, base_m, scale_m));
-        let per_m = self.haze_per_m * mean(self.haze_base_m, sky::HAZE_SCALE_HEIGHT_M)
+        let per_m = self.haze_per_m * mean(self.haze_base_m, self.haze_scale_m)
             + self.molecules_per_m * mean(0.0, sky::MOLECULE_SCALE_HEIGHT_M);
         let plan_m = Vec2::new(relative_m.x, relative_m.z).length();
         let t = ((plan_m - self.fade_start_m) / (self.fade_end_m - self.fade_start_m)).clamp(0.0, 1.0);
@@ -133,6 +178,8 @@ pub struct FrameBindings {
     pub layout: wgpu::BindGroupLayout,
     sky_table: wgpu::Texture,
     sky_view: wgpu::TextureView,
+    aerial: wgpu::Texture,
+    aerial_view: wgpu::TextureView,
     sky_sampler: wgpu::Sampler,
     views: Vec<(wgpu::Buffer, wgpu::BindGroup)>,
 }
@@ -163,6 +210,14 @@ impl FrameBindings {
                     },
                 ),
                 entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                entry(
+                    3,
+                    wgpu::BindingType::Texture {
+                        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                        view_dimension: wgpu::TextureViewDimension::D3,
+                        multisampled: false,
+                    },
+                ),
             ],
         });
         let sky_table = device.create_texture(&wgpu::TextureDescriptor {
@@ -176,16 +231,27 @@ impl FrameBindings {
             view_formats: &[],
         });
         let sky_view = sky_table.create_view(&wgpu::TextureViewDescriptor::default());
+        let aerial = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("aerial table"),
+            size: aerial_size(),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D3,
+            format: wgpu::TextureFormat::Rgba16Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let aerial_view = aerial.create_view(&wgpu::TextureViewDescriptor::default());
         let sky_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("sky table"),
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             ..wgpu::SamplerDescriptor::default()
         });
-        Self { layout, sky_table, sky_view, sky_sampler, views: Vec::new() }
+        Self { layout, sky_table, sky_view, aerial, aerial_view, sky_sampler, views: Vec::new() }
     }
 
-    /// Replaces the sky table (64 KiB).
+    /// Replaces the sky table (64 KiB) and, where there is one, the aerial table (72 KiB).
     pub fn write_sky(&self, queue: &wgpu::Queue, light: &sky::Light) {
         queue.write_texture(
             self.sky_table.as_image_copy(),
@@ -197,6 +263,18 @@ impl FrameBindings {
             },
             table_size(),
         );
+        if !light.aerial.is_empty() {
+            queue.write_texture(
+                self.aerial.as_image_copy(),
+                bytemuck::cast_slice(&light.aerial),
+                wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(sky::AERIAL_SIZE[0] * 8),
+                    rows_per_image: Some(sky::AERIAL_SIZE[1]),
+                },
+                aerial_size(),
+            );
+        }
     }
 
     /// Writes one view's uniforms and gives its bind group.
@@ -221,6 +299,10 @@ impl FrameBindings {
                     wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() },
                     wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&self.sky_view) },
                     wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sky_sampler) },
+                    wgpu::BindGroupEntry {
+                        binding: 3,
+                        resource: wgpu::BindingResource::TextureView(&self.aerial_view),
+                    },
                 ],
             });
             self.views.push((buffer, group));
@@ -229,6 +311,11 @@ impl FrameBindings {
         queue.write_buffer(buffer, 0, bytemuck::bytes_of(uniforms));
         group.clone()
     }
+}
+
+fn aerial_size() -> wgpu::Extent3d {
+    let [width, height, depth_or_array_layers] = sky::AERIAL_SIZE;
+    wgpu::Extent3d { width, height, depth_or_array_layers }
 }
 
 fn table_size() -> wgpu::Extent3d {
@@ -248,6 +335,7 @@ mod tests {
             sky_irradiance: Vec3::ONE,
             disc: Vec3::ONE,
             exposure: 1.0,
+            ..sky::Light::none()
         };
         FrameUniforms::new(&view, scene, &light, [64, 64])
     }
@@ -272,8 +360,8 @@ mod tests {
             let depth: f64 = (0..steps)
                 .map(|i| {
                     let height_m = eye_m + (point_m - eye_m) * (f64::from(i) + 0.5) / f64::from(steps);
-                    let haze = f64::from(uniforms.haze_per_m)
-                        * (-(height_m - 500.0) / f64::from(sky::HAZE_SCALE_HEIGHT_M)).exp();
+                    let haze =
+                        f64::from(uniforms.haze_per_m) * (-(height_m - 500.0) / f64::from(uniforms.haze_scale_m)).exp();
                     let molecules = f64::from(uniforms.molecules_per_m)
                         * (-height_m / f64::from(sky::MOLECULE_SCALE_HEIGHT_M)).exp();
                     (haze + molecules) * f64::from(relative.length()) / f64::from(steps)

@@ -4,6 +4,7 @@
 
 use std::mem::offset_of;
 use terrain::block::window::MAX_BLOCKS;
+use visual::passes::lights::{LightInstance, LightsUniforms};
 use visual::passes::lines::Segment;
 use visual::passes::terrain::{BlockEntry, WindowUniforms};
 use visual::shaders;
@@ -135,6 +136,18 @@ fn frame_uniforms_are_the_same_on_both_sides() {
         fade_end_m,
         eye_molecules,
         eye_haze,
+        disc_direction,
+        threshold_lux,
+        moon_direction,
+        moon_radius_rad,
+        moon_to_sun,
+        moon_key,
+        moon_light,
+        haze_scale_m,
+        aerial_reach_m,
+        lamps,
+        moon_share,
+        sun_sin,
     ];
     for (name, source) in shaders::SOURCES {
         if source.contains("shared/frame.wgsl") {
@@ -187,6 +200,20 @@ fn line_segments_are_tightly_packed_in_the_order_of_their_locations() {
     let (members, _) = layout(&parsed("lines.wgsl"), "Segment");
     let names: Vec<_> = members.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["ends_px", "joints", "colour", "half_width_px", "soft_px"]);
+}
+
+#[test]
+fn lights_are_tightly_packed_in_the_order_of_their_locations() {
+    let host = host![LightInstance: post, local_m, height, half_rad, axis, colour, back];
+    assert_eq!(host.iter().map(|(_, offset)| *offset).collect::<Vec<_>>(), [0, 8, 16, 24, 32, 40, 44]);
+    let module = parsed("lights.wgsl");
+    let (members, _) = layout(&module, "Light");
+    assert_eq!(
+        members.iter().map(|(name, _)| name).collect::<Vec<_>>(),
+        host.iter().map(|(name, _)| name).collect::<Vec<_>>()
+    );
+    let uniforms = host![LightsUniforms: eye_post, eye_fraction_m, step_m, thin_from_m, thinnest, directed];
+    assert_eq!(layout(&module, "LightsUniforms"), (uniforms, size_of::<LightsUniforms>() as u32));
 }
 
 #[test]
@@ -292,7 +319,9 @@ fn the_sky_table_has_the_same_size_on_both_sides() {
     for (name, value) in [
         ("TABLE_WIDTH", visual::sky::TABLE_WIDTH as f32),
         ("TABLE_HEIGHT", visual::sky::TABLE_HEIGHT as f32),
-        ("HAZE_SCALE_HEIGHT_M", visual::sky::HAZE_SCALE_HEIGHT_M),
+        ("AERIAL_WIDTH", visual::sky::AERIAL_SIZE[0] as f32),
+        ("AERIAL_HEIGHT", visual::sky::AERIAL_SIZE[1] as f32),
+        ("AERIAL_DEPTH", visual::sky::AERIAL_SIZE[2] as f32),
         ("MOLECULE_SCALE_HEIGHT_M", visual::sky::MOLECULE_SCALE_HEIGHT_M),
     ] {
         let line = format!("const {name}: f32 = {value:.1};");

@@ -182,17 +182,7 @@ pub fn bake(request: &BakeRequest, progress: &mut dyn FnMut(&str, f32)) -> Resul
     let cover = Arc::new(bake_cover(&field, &lakes, &features, &climate));
     info.cover = cover_bake::described(&cover);
     progress("cover", 1.0);
-    let mut world = World {
-        name,
-        projection,
-        field,
-        lakes,
-        features,
-        cover,
-        imagery: None,
-        masks: Vec::new(),
-        info,
-    };
+    let mut world = World { name, projection, field, lakes, features, cover, imagery: None, masks: Vec::new(), info };
     progress("imagery", 0.0);
     world.imagery = imagery(&world, &climate, &photos).map(Arc::new);
     progress("masks", 0.0);

@@ -8,7 +8,6 @@ use crate::gpu::{Gpu, GpuError};
 use crate::shaders;
 use crate::sky::Light;
 use crate::uniforms::{FrameBindings, FrameUniforms};
-use glam::Vec3;
 use terrain::block::mesh::TILE;
 
 /// Posts of a workgroup, as in the shader.
@@ -31,13 +30,7 @@ pub fn read(gpu: &Gpu, terrain: &Terrain, view: &View) -> Result<Vec<PlacedPost>
     let device = &gpu.device;
     let mut frame = FrameBindings::new(device);
     // Only the eye counts here.
-    let dark = Light {
-        table: Vec::new(),
-        sun_irradiance: Vec3::ZERO,
-        sky_irradiance: Vec3::ZERO,
-        disc: Vec3::ZERO,
-        exposure: 1.0,
-    };
+    let dark = Light::none();
     let uniforms = FrameUniforms::new(view, &Scene::default(), &dark, view.size_px);
     let frame_group = frame.write_view(device, &gpu.queue, 0, &uniforms);
 

@@ -3,6 +3,7 @@
 pub mod canopy;
 pub mod detail;
 pub mod heights;
+pub mod lights;
 pub mod lines;
 pub mod object_tiles;
 pub mod objects;

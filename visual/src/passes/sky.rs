@@ -1,4 +1,4 @@
-//! Draws the sky, the sun's disc and its glow wherever nothing nearer was drawn. Shader: `shaders/sky.wgsl`.
+//! Draws the sky, the sun's disc and glow and the moon wherever nothing nearer was drawn. Shader: `shaders/sky.wgsl`.
 //!
 //! Drawn after everything solid, at depth 0 with `GreaterEqual`: only pixels still cleared run the shader.
 
@@ -9,6 +9,7 @@ use crate::shaders;
 pub struct SkyPass {
     sky: wgpu::RenderPipeline,
     sun: wgpu::RenderPipeline,
+    moon: wgpu::RenderPipeline,
 }
 
 impl SkyPass {
@@ -52,14 +53,19 @@ impl SkyPass {
         Self {
             sky: pipeline("sky_vertex", "sky_fragment", wgpu::PrimitiveTopology::TriangleList, None),
             sun: pipeline("sun_vertex", "sun_fragment", wgpu::PrimitiveTopology::TriangleStrip, add),
+            moon: pipeline("moon_vertex", "moon_fragment", wgpu::PrimitiveTopology::TriangleStrip, add),
         }
     }
 
-    /// One triangle for the sky, two for the sun.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+    /// One triangle for the sky, two for the sun, two for a moon that is up.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, moon: bool) {
         pass.set_pipeline(&self.sky);
         pass.draw(0..3, 0..1);
         pass.set_pipeline(&self.sun);
         pass.draw(0..4, 0..1);
+        if moon {
+            pass.set_pipeline(&self.moon);
+            pass.draw(0..4, 0..1);
+        }
     }
 }

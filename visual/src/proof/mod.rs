@@ -13,6 +13,7 @@ use crate::frame::{Frame, Scene};
 use crate::gpu::{Gpu, GpuError};
 use crate::passes::terrain::{Terrain, TerrainLook};
 use crate::renderer::{Renderer, Settings};
+use crate::sky::HazeGrade;
 use glam::DVec3;
 use std::sync::Arc;
 use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
@@ -42,7 +43,8 @@ impl Stage {
         size_px: [u32; 2],
         scene: Scene,
     ) -> Result<Self, GpuError> {
-        let settings = Settings { msaa: 1, render_scale: 1.0, keep_depth: true, sky_in_background: false };
+        let settings =
+            Settings { msaa: 1, render_scale: 1.0, keep_depth: true, sky_in_background: false, haze: HazeGrade::Table };
         let renderer = Renderer::new(&gpu, capture::FORMAT, settings);
         let window = WindowSettings { blocks, rings, budget_bytes: BUDGET_BYTES, wait: true, threads: 2 };
         let window = Window::new(landscape, window, scene.sane().sun_direction);
