@@ -308,8 +308,8 @@ fn a_world_reads_as_it_was_written_and_damage_is_named() {
     assert!(said(&path).contains("heights.bin"), "{}", said(&path));
     let text = std::fs::read_to_string(path.join("world.toml")).unwrap();
     for (from, to, expected) in [
-        ("format_version = 1", "format_version = 99", "version 99"),
-        ("format_version = 1", "format = 1", "format_version"),
+        ("format_version = 2", "format_version = 99", "version 99"),
+        ("format_version = 2", "format = 2", "format_version"),
         ("step_m = 50.0", "step_m = -50.0", "a grid"),
         ("centre_lat_deg = 4", "centre_lat_deg = 9", "a centre"),
         ("blocks_x", "blocks_y", "description"),
