@@ -11,7 +11,7 @@ const COARSE: vec2<f32> = vec2<f32>(11.0, 4.0);
 const FINE: vec2<f32> = vec2<f32>(89.0, -38.0);
 // How far the coarse scale is bent, in repeats, and over how many posts a radian of the bend's waves goes (2 to 6 km a
 // wave): one repeat from a place the pattern has moved by more than its longest feature, and is stretched by half at most.
-const BEND: f32 = 0.22;
+const BEND: f32 = 0.32;
 const BEND_POSTS: vec3<f32> = vec3<f32>(1.7, 2.3, 5.1);
 // How far the fine scale is moved by the clumps of the coarse one, in repeats.
 const STIR: vec2<f32> = vec2<f32>(0.05, -0.035);
