@@ -255,7 +255,7 @@ fn overlay_fragment(draped: Draped) -> @location(0) vec4<f32> {
     if half_m.x > 0.0 {
         let pixels = 2.0 * half_m.x / pixel_m.y;
         if kind == WHITE {
-            cover = clamp((half_m.x - abs(at_m.y)) / pixel_m.y + 0.25, 0.0, 1.0) * smoothstep(0.4, 1.4, pixels);
+            cover = clamp((half_m.x - abs(at_m.y)) / pixel_m.y + 0.25, 0.0, 1.0) * smoothstep(0.15, 0.9, pixels);
         } else {
             // What is thinner than a pixel is drawn a pixel wide, and fades.
             cover = clamp((max(half_m.x, 0.5 * pixel_m.y) - abs(at_m.y)) / pixel_m.y + 0.5, 0.0, 1.0);
@@ -302,7 +302,7 @@ fn water(draped: Draped, light: vec4<f32>, pixel_m: vec2<f32>) -> vec3<f32> {
     let to_eye = draped.relative_m * (-1.0 / distance_m);
     // Ripples drift downstream at a metre a second.
     let at = vec2<f32>(draped.place_m.x - frame.time_s, draped.place_m.y);
-    let tilt = vec2<f32>(grain(at, 2.2, pixel_m.x), grain(at.yx + 17.0, 1.7, pixel_m.x)) * 0.22;
+    let tilt = vec2<f32>(grain(at, 1.4, pixel_m.x), grain(at.yx + 17.0, 1.1, pixel_m.x)) * 0.10;
     let normal = normalize(vec3<f32>(tilt.x, 1.0, tilt.y));
     let out = 1.0 - clamp(dot(normal, to_eye), 0.0, 1.0);
     // As in terrain.wgsl: Schlick, water's 2 % face on.

@@ -21,7 +21,7 @@ use terrain::block::overlay::{self, Kind, Overlay, Overlays, Vertex};
 use terrain::near::{Change, NearTiles, Settings, TileIndex};
 
 /// Bytes uploaded in a frame; one block of a town is about a MiB.
-const BUDGET_BYTES: usize = 1 << 20;
+const BUDGET_BYTES: usize = 2 << 20;
 
 /// Roads are drawn where one of this width spans a pixel, metres; the shader fades them out before.
 pub const ROAD_M: f64 = 9.0;

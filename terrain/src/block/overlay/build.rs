@@ -39,7 +39,11 @@ impl Overlays {
     /// Of a landscape; makes ready all its features.
     pub fn new(landscape: &Landscape) -> Self {
         let field = landscape.ground.field().clone();
-        Self { lattice: Lattice::of(field.grid()), sources: Sources::new(&landscape.features, &field), field }
+        Self {
+            lattice: Lattice::of(field.grid()),
+            sources: Sources::new(&landscape.features, &landscape.lakes, &field),
+            field,
+        }
     }
 
     /// Blocks that have anything, row by row.

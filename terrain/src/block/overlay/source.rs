@@ -6,6 +6,7 @@ use super::lattice::{Lattice, Spot, UNITS};
 use super::markings::{self, Mark};
 use super::polygon;
 use super::ribbon::Ribbon;
+use crate::features::lakes::Lakes;
 use crate::features::model::{Features, RunwaySurface, WaterwayClass};
 use crate::field::Field;
 use crate::grid::{BlockIndex, CELLS};
@@ -75,7 +76,7 @@ pub struct Sources {
 
 impl Sources {
     /// Of a world's features.
-    pub fn new(features: &Features, field: &Field) -> Self {
+    pub fn new(features: &Features, lakes: &Lakes, field: &Field) -> Self {
         let lattice = Lattice::of(field.grid());
         let mut sources = Vec::new();
         let mut room = MOST_SPOTS;
@@ -99,7 +100,9 @@ impl Sources {
             WaterwayClass::River => 3,
         });
         for water in waterways {
-            ribbons(Kind::Water, &water.line, water.width_m, &mut sources);
+            for reach in outside_lakes(&water.line, lakes) {
+                ribbons(Kind::Water, reach, water.width_m, &mut sources);
+            }
         }
         let mut roads: Vec<_> = features.roads.iter().filter(|road| !road.tunnel).collect();
         // Wide roads over narrow ones.
@@ -154,6 +157,28 @@ impl Sources {
     pub fn blocks(&self) -> impl Iterator<Item = BlockIndex> + '_ {
         self.blocks.keys().copied()
     }
+}
+
+/// The parts of a line of running water that are not in a lake, up to the first point in one: a lake is drawn by itself.
+fn outside_lakes<'a>(line: &'a [DVec2], lakes: &Lakes) -> Vec<&'a [DVec2]> {
+    if lakes.lakes().is_empty() {
+        return vec![line];
+    }
+    let wet: Vec<bool> = line.iter().map(|at| lakes.lake_at(*at).is_some()).collect();
+    let mut parts = Vec::new();
+    let mut first = 0;
+    for at in 1..line.len() {
+        let ends = at + 1 == line.len();
+        if wet[at - 1] && wet[at] {
+            if at - first > 1 {
+                parts.push(&line[first..at]);
+            }
+            first = at;
+        } else if ends {
+            parts.push(&line[first..]);
+        }
+    }
+    parts
 }
 
 fn longest_edge(ring: &[DVec2]) -> DVec2 {
@@ -224,4 +249,24 @@ fn index(lattice: &Lattice, field: &Field, source: u32, of: &Source, blocks: &mu
 /// Plan point of a place on a runway: along and to the right of a direction.
 pub fn on_runway(start_m: DVec2, along: DVec2, at: DVec2) -> DVec2 {
     start_m + along * at.x + DVec2::new(-along.y, along.x) * at.y
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::features::lakes::Lake;
+
+    #[test]
+    fn running_water_ends_in_a_lake() {
+        let p = DVec2::new;
+        let ring = vec![p(10.0, -5.0), p(40.0, -5.0), p(40.0, 5.0), p(10.0, 5.0)];
+        let lakes = Lakes::new(vec![Lake { name: String::new(), level_m: 0.0, rings: vec![ring] }]);
+        let line: Vec<DVec2> = (0..8).map(|at| p(f64::from(at) * 8.0, 0.0)).collect();
+        // 16, 24, 32 and 40 are in it or on its edge.
+        let parts = outside_lakes(&line, &lakes);
+        assert_eq!(parts.len(), 2);
+        assert_eq!((parts[0], parts[1].last()), (&line[..3], line.last()));
+        assert_eq!(outside_lakes(&line, &Lakes::default()), vec![&line[..]]);
+        assert!(outside_lakes(&line[2..4], &lakes).is_empty());
+    }
 }
