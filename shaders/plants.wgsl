@@ -217,7 +217,7 @@ fn far_vertex(@builtin(vertex_index) index: u32) -> Plain {
     let down = clamp(to_eye.y, 0.0, 1.0);
     let high_m = mix(stand.tall_m, max(stand.wide_m, 0.6 * stand.tall_m), down);
     let corner = index % 3u;
-    let side = select(select(0.0, 0.45, corner == 1u), -0.45, corner == 0u);
+    let side = select(select(0.0, 0.42, corner == 1u), -0.42, corner == 0u);
     let at_m = stand.foot_m + right * (side * stand.wide_m) + up * select(0.0, high_m, corner == 2u);
     plain.clip = frame.clip_from_relative * vec4<f32>(at_m, 1.0);
     let light = light_under(stand.foot_m.xz);

@@ -4,8 +4,10 @@
 
 use std::mem::offset_of;
 use terrain::block::window::MAX_BLOCKS;
+use visual::passes::canopy::CanopyTile;
 use visual::passes::lights::{LightInstance, LightsUniforms};
 use visual::passes::lines::Segment;
+use visual::passes::plants::{MOST_SPECIES, SpeciesEntry, TileEntry};
 use visual::passes::terrain::{BlockEntry, WindowUniforms};
 use visual::shaders;
 use visual::uniforms::FrameUniforms;
@@ -185,6 +187,33 @@ fn the_windows_uniforms_and_table_of_blocks_are_the_same_on_both_sides() {
         assert_eq!(stride as usize, size_of::<BlockEntry>(), "{name}");
     }
     assert!(seen >= 3, "terrain.wgsl, overlay.wgsl, objects.wgsl and heights.wgsl place posts");
+}
+
+#[test]
+fn plants_and_canopy_are_the_same_on_both_sides() {
+    let species = host![SpeciesEntry: height_m, width, shape, colour];
+    let plants = parsed("plants.wgsl");
+    let (shader, span) = layout(&plants, "Species");
+    assert_eq!((shader, span as usize), (species, size_of::<SpeciesEntry>()));
+    let tile = host![TileEntry: origin_m, part_m, reach_m, full, mesh_m, far_m, pad];
+    let (shader, span) = layout(&plants, "Tile");
+    assert_eq!((shader, span as usize), (tile, size_of::<TileEntry>()));
+    let (_, span) = layout(&plants, "Plant");
+    assert_eq!(span, 12);
+    let tile = host![CanopyTile: origin_m, cell_m, start_m, reach_m, crown_m, phase];
+    let (shader, span) = layout(&parsed("canopy.wgsl"), "Tile");
+    assert_eq!((shader, span as usize), (tile, size_of::<CanopyTile>()));
+
+    assert!(vegetation::species::SPECIES.len() <= MOST_SPECIES);
+    let source = shaders::joined("plants.wgsl");
+    let elevations = vegetation::pictures::ELEVATIONS_RAD;
+    for line in [
+        format!("const LEAVES: u32 = {}u;", vegetation::pictures::LEAVES),
+        format!("const ELEVATIONS: u32 = {}u;", elevations.len()),
+        format!("array<Species, {MOST_SPECIES}>"),
+    ] {
+        assert!(source.contains(&line), "expected \"{line}\" in plants.wgsl");
+    }
 }
 
 #[test]

@@ -165,7 +165,7 @@ pub struct Plants {
     model_vertices: wgpu::Buffer,
     model_indices: wgpu::Buffer,
     /// Indices and first vertex of each shape.
-    models: Vec<(Range<u32>, i32)>,
+    models: Vec<Place>,
     views: Vec<ViewDraws>,
     placed_ms_max: f64,
 }
@@ -456,7 +456,7 @@ fn pick(
 
 impl ViewDraws {
     /// Uploads the meshes and counts.
-    fn gather(&mut self, gpu: &Gpu, near: &[Vec<Near>; SHAPES], models: &[(Range<u32>, i32)]) {
+    fn gather(&mut self, gpu: &Gpu, near: &[Vec<Near>; SHAPES], models: &[Place]) {
         let mut all: Vec<Near> = Vec::new();
         self.counts = PlantCounts { draw_calls: self.draws.len(), ..PlantCounts::default() };
         for ((meshes, near), (indices, _)) in self.meshes.iter_mut().zip(near).zip(models) {
@@ -654,8 +654,11 @@ pub(super) fn write(
     );
 }
 
+/// Indices and first vertex of a shape's model.
+type Place = (Range<u32>, i32);
+
 /// Corners and indices of all models, and where each is.
-fn models() -> (Vec<ModelVertex>, Vec<u16>, Vec<(Range<u32>, i32)>) {
+fn models() -> (Vec<ModelVertex>, Vec<u16>, Vec<Place>) {
     let (mut vertices, mut indices, mut places) = (Vec::new(), Vec::new(), Vec::new());
     for shape in detail::ALL {
         let model = detail::model(shape);
