@@ -85,7 +85,10 @@ fn objects_vertex(corner: Corner) -> Surface {
     var surface: Surface;
     surface.clip = frame.clip_from_relative * vec4<f32>(relative_m, 1.0);
     surface.albedo = corner.colour.rgb * corner.colour.rgb;
-    surface.irradiance = frame.sun_irradiance * sun + frame.sky_irradiance * (light.a * up) + ground * (1.0 - up);
+    // The foot of a wall, below storey 0, sees less of the sky: by its neighbours.
+    let open_sky = select(1.0, 0.72, corner.facade.y < 0.0);
+    surface.irradiance =
+        open_sky * (frame.sun_irradiance * sun + frame.sky_irradiance * (light.a * up) + ground * (1.0 - up));
     surface.haze = haze(relative_m);
     surface.facade = corner.facade;
     let view = normalize(relative_m);

@@ -51,6 +51,8 @@ pub struct Object {
     pub id: ObjectId,
     /// The ground that it stands on, metres above sea level.
     pub base_m: f64,
+    /// Highest ground under it: under a corner of a building, else the same.
+    pub highest_m: f64,
     /// Least corner of its box, world metres.
     pub low: DVec3,
     /// Greatest corner.
@@ -96,6 +98,7 @@ impl Object {
         Self {
             id,
             base_m: stand.at_m.y,
+            highest_m: stand.at_m.y,
             low: DVec3::new(low.x, stand.at_m.y + around.low.y, low.y),
             high: DVec3::new(high.x, stand.at_m.y + around.high.y, high.y),
         }
@@ -108,9 +111,14 @@ impl fmt::Debug for ObjectIndex {
     }
 }
 
-/// Lowest ground under the corners of an outline; `None` where one stands over void.
-fn lowest_m(outline: &[DVec2], area: &Area) -> Option<f64> {
-    outline.iter().try_fold(f64::INFINITY, |lowest: f64, at| Some(lowest.min(area.height_m(at.x, at.y)?)))
+/// Lowest and highest ground under the corners of an outline; `None` where one stands over void.
+fn ground_m(outline: &[DVec2], area: &Area) -> Option<[f64; 2]> {
+    let around = [f64::INFINITY, f64::NEG_INFINITY];
+    let found = outline.iter().try_fold(around, |[low, high], at| {
+        let height_m = area.height_m(at.x, at.y)?;
+        Some([low.min(height_m), high.max(height_m)])
+    });
+    found.filter(|found| found.iter().all(|height_m| height_m.is_finite()))
 }
 
 /// Heading of a power line's tower: half way between the ways before and after it.
@@ -125,8 +133,8 @@ impl ObjectIndex {
     pub fn new(features: Arc<Features>, area: &Area) -> Self {
         let mut all = Vec::with_capacity(features.buildings.len() + features.placed.len() + features.masts.len());
         for (number, building) in (0..).zip(&features.buildings) {
-            let Some(base_m) = lowest_m(&building.outline, area).filter(|base_m| base_m.is_finite()) else { continue };
-            let solid = BuildingSolid::new(building, base_m);
+            let Some([base_m, highest_m]) = ground_m(&building.outline, area) else { continue };
+            let solid = BuildingSolid::new(building, [base_m, highest_m]);
             if solid.outline.len() < 3 {
                 continue;
             }
@@ -135,6 +143,7 @@ impl ObjectIndex {
             all.push(Object {
                 id: ObjectId::Building(number),
                 base_m,
+                highest_m,
                 low: DVec3::new(low.x, base_m - FOOT_M, low.y),
                 high: DVec3::new(high.x, solid.top_m(), high.y),
             });
@@ -207,7 +216,7 @@ impl ObjectIndex {
     /// The solid of a building in the tree.
     pub fn building(&self, object: &Object) -> Option<BuildingSolid> {
         let ObjectId::Building(number) = object.id else { return None };
-        Some(BuildingSolid::new(self.features.buildings.get(number as usize)?, object.base_m))
+        Some(BuildingSolid::new(self.features.buildings.get(number as usize)?, [object.base_m, object.highest_m]))
     }
 
     /// Where a segment first meets a thing; of several at the same place the one with the least name.

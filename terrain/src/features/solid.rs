@@ -4,14 +4,18 @@
 //! the solid is `{ plan point in the outline, foot <= y <= every plane }`: the picture draws its faces, a shell meets its
 //! faces, and both are the same numbers. One plane is a flat roof, two a gable, four a hip, six a barrel.
 //!
-//! Invariant others rely on: the eaves are `height_m` above the lowest ground under the outline's corners; walls
-//! go down to [`FOOT_M`] below it, so nothing floats on a slope.
+//! Invariant others rely on: the eaves are `height_m` above the lowest ground under the outline's corners. A height that
+//! was assumed is lowered on what is narrow, and at least [`CLEAR`] of it stands above the highest ground, or houses on a
+//! hillside would drown in it. Walls go down to [`FOOT_M`] below the lowest ground, so nothing floats on a slope.
 
-use super::model::{Building, BuildingClass};
+use super::model::{Building, BuildingClass, Origin};
 use glam::{DVec2, DVec3};
 
 /// How far walls go down below the lowest ground under a corner, metres: posts between corners may lie lower.
 pub const FOOT_M: f64 = 1.5;
+
+/// Least share of an assumed height that stands over the highest ground under a corner.
+pub const CLEAR: f64 = 0.75;
 
 /// Rounding allowed where a wall meets the roof, metres: thousands of roundings of a world's far corner, and invisible.
 const SEAM_M: f64 = 1e-9;
@@ -96,8 +100,8 @@ pub fn hash_of(at: DVec2) -> u32 {
 }
 
 impl BuildingSolid {
-    /// The solid of a building over its lowest ground.
-    pub fn new(building: &Building, base_m: f64) -> Self {
+    /// The solid of a building over the lowest and highest ground under its corners.
+    pub fn new(building: &Building, [base_m, highest_m]: [f64; 2]) -> Self {
         let mut outline = building.outline.clone();
         outline.dedup();
         if outline.len() > 1 && outline.first() == outline.last() {
@@ -106,7 +110,16 @@ impl BuildingSolid {
         if doubled_area_m2(&outline) < 0.0 {
             outline.reverse();
         }
-        let eaves_m = base_m + f64::from(building.height_m);
+        let mut height_m = f64::from(building.height_m);
+        if building.height_from == Origin::Assumed {
+            // No one builds a shed of 3 m as high as a house.
+            let (.., half_width_m) = rectangle(&outline);
+            height_m = height_m.min(2.2 + 0.9 * half_width_m);
+        }
+        let eaves_m = match building.height_from {
+            Origin::Assumed => (base_m + height_m).max(highest_m + CLEAR * height_m),
+            Origin::Stated | Origin::Derived => base_m + height_m,
+        };
         let (roof, planes) = roof(building, &outline, eaves_m);
         Self { outline, base_m, eaves_m, planes, roof }
     }
@@ -318,7 +331,6 @@ fn barrel(middle: DVec2, across: DVec2, half_width_m: f64, eaves_m: f64) -> Vec<
 
 #[cfg(test)]
 mod tests {
-    use super::super::model::Origin;
     use super::*;
 
     fn building(class: BuildingClass, outline: &[(f64, f64)], height_m: f32) -> Building {
@@ -338,7 +350,7 @@ mod tests {
             building(C::Apartments, &ELL, 30.0),
             building(C::Church, &OBLONG, 12.0),
         ];
-        all.iter().map(|one| BuildingSolid::new(one, 500.0)).collect()
+        all.iter().map(|one| BuildingSolid::new(one, [500.0; 2])).collect()
     }
 
     #[test]
@@ -397,9 +409,9 @@ mod tests {
     #[test]
     fn either_winding_gives_the_same_solid() {
         let mut turned = building(BuildingClass::House, &OBLONG, 5.5);
-        let one = BuildingSolid::new(&turned, 500.0);
+        let one = BuildingSolid::new(&turned, [500.0; 2]);
         turned.outline.reverse();
-        let other = BuildingSolid::new(&turned, 500.0);
+        let other = BuildingSolid::new(&turned, [500.0; 2]);
         let (from, to) = (DVec3::new(990.0, 503.0, 2_003.0), DVec3::new(1_020.0, 503.0, 2_003.0));
         let (hit, normal) = one.enter(from, to).unwrap();
         assert_eq!(other.enter(from, to).unwrap(), (hit, normal));

@@ -1,49 +1,52 @@
 //! The faces of a building: the same solid that shells meet ([`BuildingSolid`]), painted.
 //!
 //! A wall's windows are not geometry: it carries how many windows and storeys it has, and the shader draws them. Colours
-//! are albedos of common materials (plaster 0.4 to 0.65, brick 0.2 to 0.3, clay tiles 0.15 to 0.3, gravel and concrete 0.3
-//! to 0.45: H. Akbari, Cool roof databases, LBNL), chosen by class and by a hash of the place.
+//! are albedos of weathered materials (plaster 0.3 to 0.5, brick 0.15 to 0.3, clay tiles 0.1 to 0.2, gravel and concrete
+//! 0.15 to 0.3), chosen by class and by a hash of the place.
 
 use super::mesh::{Mesh, Paint, size_code};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use terrain::features::model::BuildingClass;
-use terrain::features::solid::{BuildingSolid, FOOT_M, RoofKind, hash_of, pairs, triangulated};
+use terrain::features::solid::{BuildingSolid, FOOT_M, RoofKind, doubled_area_m2, hash_of, pairs, triangulated};
 
 const PLASTER: [Paint; 10] = [
-    Paint::matt(0.60, 0.57, 0.50),
-    Paint::matt(0.63, 0.61, 0.57),
-    Paint::matt(0.58, 0.52, 0.40),
-    Paint::matt(0.54, 0.47, 0.36),
-    Paint::matt(0.61, 0.58, 0.53),
-    Paint::matt(0.50, 0.41, 0.33),
-    Paint::matt(0.56, 0.55, 0.52),
-    Paint::matt(0.57, 0.48, 0.41),
-    Paint::matt(0.47, 0.46, 0.43),
-    Paint::matt(0.33, 0.20, 0.15),
+    Paint::matt(0.44, 0.42, 0.37),
+    Paint::matt(0.47, 0.45, 0.42),
+    Paint::matt(0.43, 0.38, 0.30),
+    Paint::matt(0.40, 0.35, 0.27),
+    Paint::matt(0.45, 0.43, 0.39),
+    Paint::matt(0.37, 0.30, 0.24),
+    Paint::matt(0.41, 0.41, 0.38),
+    Paint::matt(0.42, 0.36, 0.30),
+    Paint::matt(0.35, 0.34, 0.32),
+    Paint::matt(0.24, 0.15, 0.11),
 ];
 const SHEET: [Paint; 4] = [
-    Paint::matt(0.52, 0.53, 0.53),
-    Paint::matt(0.42, 0.45, 0.47),
-    Paint::matt(0.56, 0.55, 0.51),
-    Paint::matt(0.33, 0.37, 0.40),
+    Paint::matt(0.42, 0.42, 0.42),
+    Paint::matt(0.34, 0.36, 0.38),
+    Paint::matt(0.45, 0.44, 0.41),
+    Paint::matt(0.26, 0.30, 0.32),
 ];
 const WOOD: [Paint; 3] = [Paint::matt(0.20, 0.15, 0.11), Paint::matt(0.27, 0.20, 0.14), Paint::matt(0.38, 0.34, 0.28)];
-const STONE: [Paint; 2] = [Paint::matt(0.48, 0.44, 0.37), Paint::matt(0.58, 0.56, 0.51)];
+const STONE: [Paint; 2] = [Paint::matt(0.38, 0.35, 0.30), Paint::matt(0.46, 0.45, 0.41)];
 const TILES: [Paint; 6] = [
-    Paint::matt(0.27, 0.125, 0.085),
-    Paint::matt(0.23, 0.115, 0.085),
-    Paint::matt(0.30, 0.155, 0.105),
-    Paint::matt(0.19, 0.115, 0.090),
-    Paint::matt(0.135, 0.120, 0.115),
-    Paint::matt(0.105, 0.105, 0.110),
+    Paint::matt(0.185, 0.105, 0.080),
+    Paint::matt(0.160, 0.098, 0.080),
+    Paint::matt(0.210, 0.125, 0.095),
+    Paint::matt(0.140, 0.100, 0.085),
+    Paint::matt(0.105, 0.098, 0.095),
+    Paint::matt(0.085, 0.085, 0.090),
 ];
 const LEVEL: [Paint; 5] = [
-    Paint::matt(0.36, 0.35, 0.33),
-    Paint::matt(0.42, 0.40, 0.37),
-    Paint::matt(0.28, 0.28, 0.28),
-    Paint::matt(0.40, 0.33, 0.27),
-    Paint::matt(0.46, 0.45, 0.43),
+    Paint::matt(0.22, 0.22, 0.20),
+    Paint::matt(0.26, 0.25, 0.23),
+    Paint::matt(0.17, 0.17, 0.17),
+    Paint::matt(0.25, 0.20, 0.17),
+    Paint::matt(0.29, 0.28, 0.27),
 ];
+
+/// Plan of the smallest hall, square metres.
+const HALL_M2: f64 = 1_000.0;
 
 /// The walls' windows and colours by class.
 struct Style {
@@ -87,7 +90,11 @@ pub fn size_m(solid: &BuildingSolid, top_m: f64) -> f64 {
 /// Adds a building to a mesh whose x and z count from a plan point and whose y is above sea level.
 pub fn add(mesh: &mut Mesh, solid: &BuildingSolid, class: BuildingClass, from: DVec2, size_m: f64) {
     let hash = hash_of(solid.outline[0]);
-    let style = style(class, solid.roof, hash);
+    // What is large, low and of no stated use is a hall.
+    let hall = class == BuildingClass::Other
+        && solid.eaves_m - solid.base_m < 12.0
+        && doubled_area_m2(&solid.outline) > 2.0 * HALL_M2;
+    let style = style(if hall { BuildingClass::Industrial } else { class }, solid.roof, hash);
     mesh.seed = (hash << 8) | size_code(size_m as f32);
     let point = |at: DVec2, y_m: f64| DVec3::new(at.x - from.x, y_m, at.y - from.y).as_vec3();
     let (height_m, foot_m) = (solid.eaves_m - solid.base_m, solid.base_m - FOOT_M);
@@ -140,7 +147,7 @@ mod tests {
                     let outline =
                         corners.iter().map(|(x, z)| turn.rotate(DVec2::new(*x, *z)) + DVec2::new(7e4, -3e4)).collect();
                     let building = Building { class, outline, height_m: 8.0, height_from: Origin::Stated };
-                    let solid = BuildingSolid::new(&building, 700.0);
+                    let solid = BuildingSolid::new(&building, [700.0; 2]);
                     let from = DVec2::new(69_900.0, -30_150.0);
                     let mut mesh = Mesh::default();
                     add(&mut mesh, &solid, class, from, 20.0);

@@ -138,19 +138,28 @@ impl Mesh {
     }
 
     /// Adds rings joined to a skin, closed at both ends: cross sections of a hull, a fuselage, a tank. Each ring has as
-    /// many points, counter-clockwise seen from its end towards its start.
+    /// many points in the same order; which way round does not matter.
     pub fn loft(&mut self, rings: &[Vec<Vec3>], paint: Paint) {
+        let (Some(first), Some(last)) = (rings.first(), rings.last()) else { return };
+        let mut faces = vec![first.iter().rev().copied().collect::<Vec<_>>(), last.clone()];
         for pair in rings.windows(2) {
             let count = pair[0].len().min(pair[1].len());
             for at in 0..count {
                 let next = (at + 1) % count;
-                let quad = [pair[0][at], pair[0][next], pair[1][next], pair[1][at]];
-                self.face(&quad, paint);
+                faces.push(vec![pair[0][at], pair[0][next], pair[1][next], pair[1][at]]);
             }
         }
-        if let (Some(first), Some(last)) = (rings.first(), rings.last()) {
-            self.face(&first.iter().rev().copied().collect::<Vec<_>>(), paint);
-            self.face(last, paint);
+        // A closed skin that looks inward encloses a negative volume.
+        let from = first.first().copied().unwrap_or_default();
+        let volume = |face: &Vec<Vec3>| -> f32 {
+            face.windows(2).skip(1).map(|pair| (face[0] - from).dot((pair[0] - from).cross(pair[1] - from))).sum()
+        };
+        let inward = faces.iter().map(volume).sum::<f32>() < 0.0;
+        for face in &mut faces {
+            if inward {
+                face.reverse();
+            }
+            self.face(face, paint);
         }
     }
 

@@ -49,11 +49,11 @@ pub const MODELS: [Model; 15] = [
     Model::PowerTower,
 ];
 
-const SHEET: Paint = Paint::matt(0.50, 0.51, 0.51);
+const SHEET: Paint = Paint::matt(0.36, 0.37, 0.37);
 const GREY: Paint = Paint::matt(0.30, 0.30, 0.31);
 const DARK: Paint = Paint::matt(0.05, 0.05, 0.055);
-const WHITE: Paint = Paint::matt(0.70, 0.70, 0.68);
-const CONCRETE: Paint = Paint::matt(0.42, 0.41, 0.38);
+const WHITE: Paint = Paint::matt(0.56, 0.56, 0.54);
+const CONCRETE: Paint = Paint::matt(0.34, 0.33, 0.31);
 const OLIVE: Paint = Paint::matt(0.125, 0.13, 0.08);
 const CANVAS: Paint = Paint::matt(0.17, 0.165, 0.115);
 const RED: Paint = Paint::matt(0.42, 0.07, 0.05);

@@ -451,7 +451,6 @@ fn the_far_corner_of_a_world_of_400_km_is_as_exact() {
 
 #[test]
 fn a_shell_meets_the_wall_and_the_roof_of_a_building_where_they_are_drawn() {
-    use glam::DVec2;
     use terrain::features::index::{ObjectId, ObjectIndex};
     use terrain::features::model::{Building, BuildingClass, Features, Origin};
     let field = terrain::synthetic::from_fn(terrain::Grid::centred(200.0, 1, 1).unwrap(), |_, _| 300.0);
