@@ -114,7 +114,7 @@ fn lights_vertex(@builtin(vertex_index) index: u32, light: Light) -> Corner {
     var clip = frame.clip_from_relative * vec4<f32>(relative_m, 1.0);
     // Ground under the sprite's lower half is nearer than the light: by the sprite's radius over the slope of the look.
     let slope = clamp(abs(relative_m.y) / distance_m, 0.02, 1.0);
-    let nearer = min(soft_px * 2.0 / frame.focal_px / slope + 1.0 / distance_m, 0.2);
+    let nearer = min(reach_px / frame.focal_px / slope + 1.0 / distance_m, 0.35);
     clip.z = clip.z / (1.0 - nearer);
     let shown = bright > 0.004 && clip.w > 0.0;
     var corner: Corner;

@@ -61,12 +61,12 @@ const AIR_M: f32 = 100_000.0;
 const HIGHEST_EYE_M: f32 = 60_000.0;
 const GROUND_ALBEDO: f32 = 0.3;
 /// Starlight and airglow, far above nature's so that a screen can show it.
-const NIGHT: Vec3 = Vec3::new(1.5e-6, 2.1e-6, 3.6e-6);
+const NIGHT: Vec3 = Vec3::new(1.0e-6, 1.4e-6, 2.3e-6);
 /// What the ground gets by night beside that: the eye adapted to the dark sees the ground, a screen's black would not show it.
 const NIGHT_GROUND: Vec3 = Vec3::new(2.4e-5, 3.0e-5, 4.2e-5);
 /// Irradiance by the full moon above the air, above nature's 2e-6 as [`NIGHT`] is but less so; bluish, as an eye sees it
 /// that has few cones left.
-const FULL_MOON: Vec3 = Vec3::new(1.25e-4, 1.5e-4, 1.9e-4);
+const FULL_MOON: Vec3 = Vec3::new(2.5e-4, 3.0e-4, 3.8e-4);
 /// Radiance of the full moon's disc: nature's (0.25 lux of the sun's 133,000 over 6.4e-5 sr).
 const MOON_RADIANCE: f32 = 0.03;
 /// Illuminance by the sun above the air, lux: what an irradiance of 1 is (683 lm/W, 98 lm/W of 1,361 W/m2).
@@ -439,12 +439,12 @@ pub fn molecules_at(height_m: f32) -> f32 {
     MOLECULES_PER_M.y * (-height_m.max(0.0) / MOLECULE_SCALE_HEIGHT_M).exp()
 }
 
-/// Exposure for an irradiance on ground that faces the light somewhat: the eye adapts to most of a change, not to all, so
-/// night stays dark; to nearly all of it from deep dusk on, so night stays readable.
+/// Exposure for an irradiance on ground that faces the light somewhat: the eye adapts to most of a change, not to all;
+/// from deep dusk on to all of it, so that night is dark by its sky and shadows and its ground stays readable.
 pub fn exposure(irradiance: Vec3) -> f32 {
     const DEEP_DUSK: f32 = 0.01;
     let luminance = irradiance.dot(LUMINANCE).max(1e-7);
-    3.1 * luminance.max(DEEP_DUSK).powf(-0.6) * (luminance / DEEP_DUSK).min(1.0).powf(-0.93)
+    3.1 * luminance.max(DEEP_DUSK).powf(-0.6) * (luminance / DEEP_DUSK).min(1.0).powf(-1.0)
 }
 
 fn rayleigh_phase(cosine: f32) -> f32 {

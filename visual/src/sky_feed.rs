@@ -26,11 +26,11 @@ struct Wanted {
 }
 
 /// Elevation of the moon that is passed over, radians.
-const MOON_STEP_RAD: f64 = 1.0 * std::f64::consts::PI / 180.0;
+const MOON_STEP_RAD: f64 = std::f64::consts::PI / 180.0;
 /// Share of the full moon's light that is passed over.
 const MOON_STEP: f64 = 0.01;
 /// The moon's light is nothing beside a sun above this elevation, radians.
-const MOON_DARK_RAD: f64 = -1.0 * std::f64::consts::PI / 180.0;
+const MOON_DARK_RAD: f64 = -std::f64::consts::PI / 180.0;
 
 impl Wanted {
     fn near(&self, other: &Self) -> bool {

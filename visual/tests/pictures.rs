@@ -106,6 +106,7 @@ fn nonsense_is_refused_or_drawn_but_never_fatal() {
         assert!(matches!(Offscreen::new(&gpu, size), Err(GpuError::Size { .. })), "{size:?}");
     }
     let broken = Scene {
+        moon_direction: Some(DVec3::NAN),
         sun_direction: DVec3::NAN,
         visibility_m: f64::NAN,
         haze_base_m: f64::INFINITY,

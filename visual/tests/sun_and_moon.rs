@@ -50,12 +50,12 @@ fn the_moon_is_where_pyephem_sees_it_and_as_full() {
         let to_sun = terrain::frame::direction(sun.true_azimuth_rad, sun.elevation_rad);
         let to_moon = terrain::frame::direction(ours.true_azimuth_rad, ours.elevation_rad);
         worst_lit = worst_lit.max((moon::illuminated(moon::phase_rad(to_sun, to_moon)) - lit).abs());
-        // Theirs is from the Earth's centre: at most its radius apart.
         worst_km = worst_km.max((ours.distance_km - distance_km).abs());
     }
     println!("400 moons: worst {worst:.4} deg, {worst_lit:.4} of the disc, {worst_km:.0} km");
+    // What is promised; the series leaves out 0.02 degrees and as much of the distance (130 km), nutation is 0.005 more.
     assert!(worst < 0.1, "{worst}");
     // Half a degree of phase angle changes what is lit by 0.0044; theirs is taken from the Earth's centre (up to a degree).
     assert!(worst_lit < 0.012, "{worst_lit}");
-    assert!(worst_km < 6_378.2 + 400.0, "{worst_km}");
+    assert!(worst_km < 200.0, "{worst_km}");
 }

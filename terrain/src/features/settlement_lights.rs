@@ -73,7 +73,7 @@ impl Lamps {
             });
         }
         for at in houses() {
-            if hash(at) % 3 == 0 {
+            if hash(at).is_multiple_of(3) {
                 put(at, Kind::House);
             }
         }
@@ -109,7 +109,7 @@ fn lit(class: RoadClass) -> Option<(Kind, f64)> {
 fn light(lamp: &Lamp) -> LightPoint {
     // One street in four, by the square kilometre that it lies in, has newer lamps.
     let district = DVec2::new((lamp.at.x / 1_000.0).floor(), (lamp.at.y / 1_000.0).floor());
-    let street = if hash(district) % 4 == 0 { COOL } else { SODIUM };
+    let street = if hash(district).is_multiple_of(4) { COOL } else { SODIUM };
     let (above_m, colour, intensity_cd) = match lamp.kind {
         Kind::Avenue => (10.0, street, 500.0),
         Kind::Street => (7.0, street, 200.0),
