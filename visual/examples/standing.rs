@@ -121,14 +121,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     features.placed.extend(things);
     let features = Arc::new(features);
     let rings = Rings::new(&grid, 12, 1.0);
-    let landscape = Arc::new(Landscape {
-        ground: Ground::new(field.clone()),
-        lakes: Arc::new(Lakes::default()),
-        features: features.clone(),
-        cover: Arc::new(Cover::unknown(&grid)),
-        climate: Climate::new(0.85, 420.0),
-        masks: RingMasks::new(&field, rings.limits_m),
-    });
+    let bare = Landscape::bare(field, rings.limits_m, Climate::new(0.85, 420.0));
+    let landscape = Arc::new(Landscape { features: features.clone(), ..bare });
     let area = landscape.ground.whole();
     let start = Instant::now();
     let index = Arc::new(ObjectIndex::new(features, &area));

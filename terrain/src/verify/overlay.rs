@@ -127,7 +127,8 @@ fn cancel(edges: &mut Edges, a: Spot, b: Spot, count: i32) {
 /// Edges left over that lie on another of the opposite direction.
 fn t_junctions(edges: &Edges) -> u64 {
     // An edge lies in one cell, or between two; those that may overlap begin in the same cell or on its border.
-    let mut cells: HashMap<(i64, i64), Vec<(Spot, Spot, i32)>> = HashMap::new();
+    type Run = (Spot, Spot, i32);
+    let mut cells: HashMap<(i64, i64), Vec<Run>> = HashMap::new();
     for ((a, b), count) in edges {
         let cell = |low: i64, high: i64| (low + high).div_euclid(2 * UNITS);
         cells.entry((cell(a.u, b.u), cell(a.v, b.v))).or_default().push((*a, *b, *count));
