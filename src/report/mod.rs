@@ -92,7 +92,7 @@ mod tests {
              objects_drawn sim.steps sim.hash mesh_hash image_hash shots peak_rss_mib"
         );
         let verify =
-            Verify { overlay: Some(super::verify::Draped::default()), gpu: Some(Gpu::default()), ..Verify::default() };
+            Verify { overlay: Some(verify::Draped::default()), gpu: Some(Gpu::default()), ..Verify::default() };
         assert_eq!(
             names(&verify),
             "t_junctions position_mismatches edges_checked.templates edges_checked.pairs edges_checked.window eyes \

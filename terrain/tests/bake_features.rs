@@ -27,7 +27,15 @@ fn real(sources: &[&str], features: Vec<Input>, step_m: f64) -> Option<World> {
         return None;
     }
     let sources = sources.iter().map(|file| (Input::File(data(file)), 1.0)).collect();
-    let request = BakeRequest { name: "test".into(), sources, features, step_m, centre: None, size_km: None };
+    let request = BakeRequest {
+        name: "test".into(),
+        sources,
+        features,
+        imagery: Vec::new(),
+        step_m,
+        centre: None,
+        size_km: None,
+    };
     let started = Instant::now();
     let world = bake(&request, &mut |_, _| ()).unwrap_or_else(|e| panic!("{e}"));
     println!("baked in {:.2} s", started.elapsed().as_secs_f64());

@@ -10,7 +10,6 @@ use std::time::Instant;
 use terrain::block::ground_map::Climate;
 use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
 use terrain::block::{Landscape, Rings};
-use terrain::features::cover::Cover;
 use terrain::features::index::ObjectIndex;
 use terrain::features::lakes::Lakes;
 use terrain::features::model::{
@@ -19,7 +18,7 @@ use terrain::features::model::{
 };
 use terrain::features::placing;
 use terrain::frame::{attitude, direction};
-use terrain::{Grid, Ground, RingMasks, synthetic};
+use terrain::{Grid, synthetic};
 use visual::camera::View;
 use visual::capture::{self, Offscreen};
 use visual::models::things::MODELS;
