@@ -282,7 +282,8 @@ impl Scenery {
 
     /// Whether all that the eye's place asks for is there.
     pub fn is_settled(&self) -> bool {
-        !self.terrain.window().is_jumping() && self.late() == 0
+        let window = self.terrain.window();
+        !window.is_jumping() && !window.is_relighting() && self.late() == 0
     }
 
     /// Takes the shapes that a world's folder has of its own.

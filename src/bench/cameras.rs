@@ -86,7 +86,7 @@ impl Camera {
             let after = scenery.terrain.window().counters();
             let still = before.upload_bytes_total == after.upload_bytes_total
                 && (before.shifts, before.switches, before.relights) == (after.shifts, after.switches, after.relights);
-            if still && !scenery.terrain.window().is_jumping() {
+            if still && scenery.is_settled() {
                 break;
             }
         }

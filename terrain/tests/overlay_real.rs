@@ -26,6 +26,7 @@ fn andorra(step_m: f64) -> Option<World> {
         name: "andorra".into(),
         sources: vec![(Input::File(heights), 1.0)],
         features: vec![Input::File(features)],
+        imagery: Vec::new(),
         step_m,
         centre: Some(Geodetic::from_degrees(42.55, 1.6)),
         size_km: Some([24.0, 24.0]),

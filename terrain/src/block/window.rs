@@ -273,6 +273,11 @@ impl Window {
         self.slots.get(slot).and_then(Option::as_ref)
     }
 
+    /// Whether light for a newer sun is on its way.
+    pub fn is_relighting(&self) -> bool {
+        self.relighting || self.next_sun.is_some()
+    }
+
     /// Whether uploads are still owed after a jump.
     pub fn is_jumping(&self) -> bool {
         self.jumping

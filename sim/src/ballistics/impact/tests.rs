@@ -453,13 +453,13 @@ fn the_far_corner_of_a_world_of_400_km_is_as_exact() {
 fn a_shell_meets_the_wall_and_the_roof_of_a_building_where_they_are_drawn() {
     use terrain::features::index::{ObjectId, ObjectIndex};
     use terrain::features::model::{Building, BuildingClass, Features, Origin};
-    let field = terrain::synthetic::from_fn(terrain::Grid::centred(200.0, 1, 1).unwrap(), |_, _| 300.0);
-    let area = terrain::Ground::new(std::sync::Arc::new(field)).whole();
+    let field = synthetic::from_fn(Grid::centred(200.0, 1, 1).unwrap(), |_, _| 300.0);
+    let area = Ground::new(Arc::new(field)).whole();
     // 12 m along x, 9 m along z, eaves at 306 m; its west wall is at x = 40.
     let outline = [(40.0, 10.0), (40.0, 19.0), (52.0, 19.0), (52.0, 10.0)].map(|(x, z)| DVec2::new(x, z)).to_vec();
     let building = Building { class: BuildingClass::House, outline, height_m: 6.0, height_from: Origin::Stated };
     let features = Features { buildings: vec![building], ..Features::default() };
-    let objects = ObjectIndex::new(std::sync::Arc::new(features), &area);
+    let objects = ObjectIndex::new(Arc::new(features), &area);
     let step_s = 1.0 / 120.0;
     let flown = |from: DVec3, velocity: DVec3| {
         let fall = DVec3::NEG_Y * 9.81;
