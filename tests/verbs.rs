@@ -104,7 +104,11 @@ fn a_world_is_baked_described_and_asked() {
         (&"plane".into(), &Value::from(vec![16, 12]), &50.0.into())
     );
     assert_eq!((&baked["posts"], &baked["voids"]["posts"]), (&(481 * 361).into(), &0.into()));
-    assert_eq!(baked["features"]["lakes"].to_string(), r#"{"read":3,"kept":1,"skipped":2}"#);
+    let reasons = r#"{"no polygon, and no tag that says what it is":1,"outside the world":1}"#;
+    assert_eq!(
+        baked["features"]["lakes"].to_string(),
+        format!(r#"{{"read":3,"kept":1,"skipped":2,"skipped_for":{reasons},"notes":{{}}}}"#)
+    );
     assert_eq!((&baked["lakes"][0]["name"], &baked["lakes"][0]["level_m"]), (&"Square".into(), &2000.0.into()));
     assert_eq!(baked["sources"][0]["name"], "N42E007.hgt");
     assert!(number(&baked["wall_s"]) > 0.0 && baked["peak_rss_mib"].as_f64().is_none_or(|mib| mib > 1.0));
@@ -257,7 +261,7 @@ fn a_damaged_world_says_what_was_expected_and_found() {
     damage("lakes.json", &|_| Some(b"[]".to_vec()), &["bytes"]);
     damage("world.toml", &|_| Some(b"\x00\xff".to_vec()), &[]);
     damage("world.toml", &|_| Some(b"= 3".to_vec()), &["TOML"]);
-    damage("world.toml", &edited("format_version = 1", "format_version = 99"), &["version 99"]);
+    damage("world.toml", &edited("format_version = 2", "format_version = 99"), &["version 99"]);
     damage("world.toml", &edited("step_m = 50.0", "step_m = 25.0"), &["east_m"]);
     damage("world.toml", &edited("blocks_x = 16", "blocks_x = 6"), &[]);
     damage("world.toml", &edited("centre_lat_deg", "centre_lat"), &[]);
@@ -285,7 +289,7 @@ fn what_is_no_world_is_never_touched_and_a_failed_bake_leaves_nothing() {
         ("no/such.tif", &[][..], &["no/such.tif", "expected a readable file", "found"][..]),
         ("lakes.geojson", &[], &["lakes.geojson", "expected GeoTIFF", "found"]),
         ("N42E007.hgt@0", &[], &["N42E007.hgt", "height scale", "found 0"]),
-        (tile, &["--features", tile], &[tile, "expected a text file", "found"]),
+        (tile, &["--features", tile], &[tile, "expected OSM PBF, OSM XML, GeoJSON", "found"]),
         (tile, &["--features", "no.geojson"], &["no.geojson", "expected", "found"]),
         (tile, &["--centre", "0,0", "--size-km", "10x10"], &["expected data under the world", "42.500, 7.500"]),
         (tile, &["--centre", "90,0"], &["centre", "86"]),

@@ -1,3 +1,5 @@
+//! The cover as the bake makes it, against points in polygons one by one and whatever the number of threads.
+
 use super::*;
 use crate::features::lakes::{Lake, inside};
 use crate::features::model::{BuildingClass, Origin};

@@ -1,3 +1,5 @@
+//! Plants: the same in any order, nested by share, on the ground, never in a clearing.
+
 use super::*;
 use terrain::block::ground_map::Climate;
 use terrain::features::cover::FROM_FEATURES;

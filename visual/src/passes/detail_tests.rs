@@ -1,3 +1,5 @@
+//! The detail texture: its mean, its mips, and how much of it repeats as one looks down on it.
+
 use super::*;
 
 #[test]

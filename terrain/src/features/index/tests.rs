@@ -1,3 +1,5 @@
+//! The index against every object one by one, and standing things against the ground query.
+
 use super::*;
 use crate::features::model::{Building, BuildingClass, Mast, MastClass, Origin, Placed, PlacedClass, PowerLine};
 use crate::grid::Grid;
