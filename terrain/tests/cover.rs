@@ -62,7 +62,11 @@ fn the_default_world_is_covered_as_the_tian_shan_is() {
     let lake = world.projection.to_world(terrain::Geodetic::from_degrees(42.4, 77.2));
     assert_eq!(cover.class_at(lake.x, lake.y), CoverClass::Water);
     let marked = |cell: &&u8| **cell & FROM_FEATURES != 0;
-    assert!(cover.cells().iter().filter(marked).all(|cell| CoverClass::of(*cell) == CoverClass::Water));
+    // Lakes, and the airfields' surfaces with the grass beside them.
+    let stated = [CoverClass::Water, CoverClass::Paved, CoverClass::Grass];
+    assert!(cover.cells().iter().filter(marked).all(|cell| stated.contains(&CoverClass::of(*cell))));
+    let paved = cover.cells().iter().filter(marked).filter(|cell| CoverClass::of(**cell) == CoverClass::Paved).count();
+    assert!(paved > 0, "there are airfields");
 }
 
 #[test]

@@ -105,9 +105,11 @@ impl PointMass {
         }
     }
 
-    /// Lift over weight that the wing can give at most.
+    /// Lift over weight that the wing can give at most; none where the speed is not a number.
     fn load_available(&self, speed_mps: f64, air: &Air) -> f64 {
-        0.5 * air.density_kgpm3 * speed_mps * speed_mps * self.wing_m2 * self.lift_max / (self.mass_kg * GRAVITY_MPS2)
+        let lift_n = 0.5 * air.density_kgpm3 * speed_mps * speed_mps * self.wing_m2 * self.lift_max;
+        // `max` takes the other of NaN and a number.
+        (lift_n / (self.mass_kg * GRAVITY_MPS2)).max(0.0)
     }
 
     /// Speed at which the wing just carries the weight, m/s.
