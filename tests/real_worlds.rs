@@ -60,7 +60,10 @@ fn the_pyrenees() {
     let bake =
         ["bake", "--dem", &north, &south, "--features", &lakes, "baells.geojson", "--step", "100", "--out", "p.world"];
     let world = json(folder, &bake);
-    assert_eq!(world["features"]["lakes"].to_string(), r#"{"read":9,"kept":1,"skipped":8,"skipped_for":{"outside the world":8},"notes":{}}"#);
+    assert_eq!(
+        world["features"]["lakes"].to_string(),
+        r#"{"read":9,"kept":1,"skipped":8,"skipped_for":{"outside the world":8},"notes":{}}"#
+    );
     assert!(world["voids"]["posts"].as_u64().is_some_and(|posts| posts > 1_000), "{}", world["voids"]);
     // The sea of the coast at Tarragona; SRTM has noise of a few metres on it.
     assert!(world["extent"]["lowest_m"].as_f64().is_some_and(|m| (-30.0..1.0).contains(&m)), "{}", world["extent"]);

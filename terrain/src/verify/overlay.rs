@@ -41,7 +41,7 @@ pub fn look(landscape: &Landscape, most_blocks: usize, mut progress: impl FnMut(
     let every = all.len().div_ceil(most_blocks.max(1)).max(1);
     let looked: Vec<BlockIndex> = all.into_iter().step_by(every).collect();
     let mut found = Draped { blocks: looked.len() as u64, ..Draped::default() };
-    let mut outlines: BTreeMap<u32, Edges> = BTreeMap::new();
+    let mut outlines: BTreeMap<(u32, u32), Edges> = BTreeMap::new();
     let mut heights: HashMap<Spot, u32> = HashMap::new();
     for (at, block) in looked.iter().enumerate() {
         let overlay = overlays.block(*block);
@@ -61,7 +61,7 @@ pub fn look(landscape: &Landscape, most_blocks: usize, mut progress: impl FnMut(
                     cancel(&mut edges, corners[corner], corners[(corner + 1) % 3], 1);
                 }
             }
-            let outline = outlines.entry(part.source).or_default();
+            let outline = outlines.entry((part.source, part.piece)).or_default();
             for ((a, b), count) in edges {
                 cancel(outline, a, b, count);
             }

@@ -64,12 +64,7 @@ impl Overlays {
         };
         for item in self.sources.of_block(block) {
             let Some(source) = self.sources.sources.get(item.source as usize) else { continue };
-            let first = drape.overlay.indices.len() as u32;
             drape.item(source, item);
-            let count = drape.overlay.indices.len() as u32 - first;
-            if count > 0 {
-                drape.overlay.parts.push(Part { source: item.source, first, count });
-            }
         }
         overlay
     }
@@ -85,6 +80,7 @@ struct Drape<'a> {
 impl Drape<'_> {
     fn item(&mut self, source: &Source, item: &Item) {
         let things = item.first as usize..(item.first + item.count) as usize;
+        let first = self.overlay.indices.len() as u32;
         match &source.shape {
             Shape::Ribbon { ribbon, along_m } => {
                 for segment in things {
@@ -120,7 +116,8 @@ impl Drape<'_> {
                 }
             }
             Shape::Marks { marks, start_m, along } => {
-                for mark in &marks[things] {
+                for (number, mark) in things.clone().zip(&marks[things]) {
+                    let first = self.overlay.indices.len() as u32;
                     let place = |at: DVec2| self.lattice.spot(on_runway(*start_m, *along, at));
                     let [Some(a), Some(b), Some(c), Some(d)] = mark.corners.map(place) else { continue };
                     let (Some(origin), Some(polygon)) = (place(mark.centre), Polygon::new(&[a, b, c, d])) else {
@@ -136,8 +133,19 @@ impl Drape<'_> {
                         half_length_m: mark.half_length_m,
                     };
                     self.polygon(polygon, &frame);
+                    self.part(item.source, number as u32, first);
                 }
+                return;
             }
+        }
+        self.part(item.source, 0, first);
+    }
+
+    /// Closes a part that began at an index; without a triangle there is none.
+    fn part(&mut self, source: u32, piece: u32, first: u32) {
+        let count = self.overlay.indices.len() as u32 - first;
+        if count > 0 {
+            self.overlay.parts.push(Part { source, piece, first, count });
         }
     }
 

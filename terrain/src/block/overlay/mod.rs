@@ -119,11 +119,13 @@ impl Vertex {
     }
 }
 
-/// The triangles of one feature in a block.
+/// The triangles of one feature, or of one painted mark, in a block.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Part {
     /// Which feature: equal in all blocks.
     pub source: u32,
+    /// Which of its marks, that lie on one another as paint does; 0 of what has none.
+    pub piece: u32,
     /// Its indices.
     pub first: u32,
     /// Number of indices.
