@@ -6,7 +6,7 @@
 //! reference point, looking at it).
 
 use crate::failure::Failure;
-use crate::scenery::{self, Scenery};
+use crate::scenery;
 use crate::still::{self, Standpoint};
 use crate::values;
 use glam::{DQuat, DVec2, DVec3};
@@ -14,6 +14,7 @@ use serde::Deserialize;
 use sim::UtcTime;
 use std::io::Read;
 use std::path::Path;
+use terrain::Area;
 use terrain::features::model::Airfield;
 use terrain::store::World;
 
@@ -70,9 +71,9 @@ impl Views {
     ///
     /// # Errors
     /// [`Failure::Misuse`] names the entry that has no place there.
-    pub fn places(&self, world: &World, scenery: &Scenery) -> Result<Vec<Viewpoint>, Failure> {
+    pub fn places(&self, world: &World, area: &Area) -> Result<Vec<Viewpoint>, Failure> {
         let place = |entry: &Entry| {
-            let stand = standpoint(entry, world, scenery)
+            let stand = standpoint(entry, world, area)
                 .map_err(|found| Failure::Misuse(format!("{}: `{}`: {found}", self.source, entry.name)))?;
             let (visibility_m, fov_y_rad) = (entry.visibility_m, entry.fov_y_deg.map(f64::to_radians));
             Ok(Viewpoint { name: entry.name.clone(), stand, visibility_m, fov_y_rad })
@@ -110,7 +111,7 @@ struct Entry {
     above_m: Option<f64>,
 }
 
-fn standpoint(entry: &Entry, world: &World, scenery: &Scenery) -> Result<Standpoint, String> {
+fn standpoint(entry: &Entry, world: &World, area: &Area) -> Result<Standpoint, String> {
     let time = match &entry.time {
         Some(text) => UtcTime::parse(text).map_err(|error| error.to_string())?,
         None => scenery::default_moment(world),
@@ -126,16 +127,16 @@ fn standpoint(entry: &Entry, world: &World, scenery: &Scenery) -> Result<Standpo
             return Err(format!("{what} {value}, which is not within {}..={}", range.start(), range.end()));
         }
     }
-    let (eye_m, attitude) = place(entry, world, scenery)?;
-    let heavens = scenery.heavens(time).map_err(|error| error.to_string())?;
+    let (eye_m, attitude) = place(entry, world, area)?;
+    let heavens = scenery::heavens(world, time).map_err(|error| error.to_string())?;
     Ok(Standpoint { eye_m, attitude, heavens })
 }
 
-fn place(entry: &Entry, world: &World, scenery: &Scenery) -> Result<(DVec3, DQuat), String> {
+fn place(entry: &Entry, world: &World, area: &Area) -> Result<(DVec3, DQuat), String> {
     if let (Some(eye), Some(look), None) = (&entry.eye, &entry.look, &entry.airfield) {
         let eye = values::place(eye).map_err(|error| error.to_string())?;
         let look = values::look(look).map_err(|error| error.to_string())?;
-        let eye_m = scenery::position(world, &scenery.area, eye).map_err(|error| error.to_string())?;
+        let eye_m = scenery::position(world, area, eye).map_err(|error| error.to_string())?;
         return Ok((eye_m, still::attitude(world, eye_m, look.azimuth_deg, look.elevation_deg)));
     }
     let (Some(code), None, None) = (&entry.airfield, &entry.eye, &entry.look) else {

@@ -85,7 +85,7 @@ pub fn bench(world: &Arc<World>, views: &Views, load: Load) -> Result<Vec<BenchR
         targets.push(Offscreen::new(&scenery.gpu, load.size_px).map_err(failed)?);
         sceneries.push(scenery);
     }
-    let places: Vec<_> = views.places(world, &sceneries[0])?.into_iter().step_by(load.stride).collect();
+    let places: Vec<_> = views.places(world, &sceneries[0].area)?.into_iter().step_by(load.stride).collect();
     let mut times_ms = vec![vec![0.0; load.rounds as usize]; variants.len()];
     let mut worst_ms = vec![0.0f64; variants.len()];
     let share = 1.0 / places.len() as f64;

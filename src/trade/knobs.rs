@@ -1,6 +1,7 @@
 //! The five knobs, each with its values from coarsest to finest.
 
 use super::Effort;
+use super::landscape;
 use super::post_step;
 use super::stage::{Actor, Seen, play};
 use crate::bench::cameras::{self, Camera};
@@ -20,18 +21,18 @@ const SURFACE_PX: &str = "px of 1080 rows over 60 degrees, root mean square of t
 const GREY: &str = "grey of 255, root mean square of the picture against all at level 0";
 
 /// One value to try.
-struct Value {
-    setting: f64,
-    look: Look,
+pub(super) struct Value {
+    pub setting: f64,
+    pub look: Look,
 }
 
 /// What all knobs share.
-struct Setting<'a> {
-    world: &'a Arc<World>,
-    look: Look,
-    cameras: Vec<Camera>,
-    to_sun: DVec3,
-    effort: &'a Effort,
+pub(super) struct Setting<'a> {
+    pub world: &'a Arc<World>,
+    pub look: Look,
+    pub cameras: Vec<Camera>,
+    pub to_sun: DVec3,
+    pub effort: &'a Effort,
 }
 
 /// Measures every knob over a world that was baked from a request; `tell` hears what is being done.
@@ -105,6 +106,8 @@ pub fn measure(
         |_, grey| KnobPoint { error: grey, ..KnobPoint::default() },
     )?);
 
+    knobs.extend(landscape::knobs(&setting, tell)?);
+
     let [width, height] = effort.size_px;
     let conditions = format!(
         "{width}x{height}, {} cameras on {}, {} rounds each, the values of a knob in turns; all else as in `standard`",
@@ -125,7 +128,7 @@ impl Setting<'_> {
     }
 
     /// A knob whose values are looks.
-    fn knob(
+    pub(super) fn knob(
         &self,
         name: &str,
         unit: &str,

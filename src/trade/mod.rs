@@ -8,6 +8,7 @@ mod axis;
 mod drawing;
 pub mod flight;
 mod knobs;
+mod landscape;
 mod plot;
 mod post_step;
 mod stage;
@@ -54,7 +55,10 @@ mod tests {
         let mut told = 0;
         let trade = measure(&Arc::new(tiny_world()), &tiny_request(), &effort, &mut |_| told += 1).unwrap();
         let names: Vec<&str> = trade.knobs.iter().map(|knob| knob.name.as_str()).collect();
-        assert_eq!(names, ["window", "pixel limit", "near radius", "post step", "render scale"]);
+        assert_eq!(
+            names,
+            ["window", "pixel limit", "near radius", "post step", "render scale", "plants", "haze", "ground detail"]
+        );
         assert!(told >= names.len());
         for knob in &trade.knobs {
             assert!(knob.points.len() >= 2 && !knob.unit.is_empty() && !knob.cost_unit.is_empty(), "{}", knob.name);

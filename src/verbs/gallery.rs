@@ -34,7 +34,7 @@ pub fn run(args: &GalleryArgs, output: Output) -> Result<(), Failure> {
     let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), look);
     scenery.use_models_of(args.world.as_deref())?;
     // Every entry is placed before the first picture is drawn.
-    let places = views.places(&world, &scenery)?;
+    let places = views.places(&world, &scenery.area)?;
     let target = Offscreen::new(&scenery.gpu, look.size_px).map_err(failed)?;
     let bar = Progress::new("taking pictures");
     let shrink = (COLUMNS * look.size_px[0]).div_ceil(SHEET_PX).max(1);
