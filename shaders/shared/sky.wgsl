@@ -25,23 +25,21 @@ const AERIAL_HEIGHT: f32 = 32.0;
 const AERIAL_DEPTH: f32 = 24.0;
 
 // What light scattered in over a distance tends to, so that times 1 - haze_from_eye it is that light: from the aerial table
-// where there is one, else the sky's; the sky's as well where the ground fades into it. Two texture reads, one without a
-// table.
+// where there is one, else the sky's; the sky's as well where the ground fades into it. Two texture reads.
 fn scattered(relative_m: vec3<f32>) -> vec3<f32> {
     let distance_m = length(relative_m);
     let direction = relative_m / max(distance_m, 1e-3);
-    if frame.aerial_reach_m <= 0.0 {
-        return sky_radiance(direction);
-    }
     let azimuth_cos = dot(direction.xz, frame.sun_level) * inverseSqrt(max(dot(direction.xz, direction.xz), 1e-12));
     let u = sqrt(max(0.5 - 0.5 * azimuth_cos, 0.0));
     // As sky::aerial_elevation_sin: the fourth root of the sine, finest at the horizon, from -1 to 1.
     let v = 0.5 + 0.5 * sign(direction.y) * sqrt(sqrt(abs(direction.y)));
-    let w = sqrt(min(distance_m / frame.aerial_reach_m, 1.0));
+    let w = sqrt(min(distance_m / max(frame.aerial_reach_m, 1.0), 1.0));
     let size = vec3<f32>(AERIAL_WIDTH, AERIAL_HEIGHT, AERIAL_DEPTH);
     let texel = (vec3<f32>(u, v, w) * (size - 1.0) + 0.5) / size;
     let near = textureSampleLevel(aerial_table, sky_sampler, texel, 0.0).rgb;
-    return mix(near, sky_radiance(direction), smoothstep(0.7 * frame.fade_end_m, frame.fade_end_m, length(relative_m.xz)));
+    let faded = smoothstep(0.7 * frame.fade_end_m, frame.fade_end_m, length(relative_m.xz));
+    // No `if` on a uniform alone: lavapipe would compile the shader anew for each draw that binds a group.
+    return mix(near, sky_radiance(direction), select(faded, 1.0, frame.aerial_reach_m <= 0.0));
 }
 
 // Mean of a density exp(-height / scale) between two heights, given in scale heights above where it is 1.

@@ -17,6 +17,9 @@ use visual::camera::View;
 /// Start and prime of the 64-bit FNV-1a hash (G. Fowler, L. Noll, P. Vo, 1991).
 const FNV: (u64, u64) = (0xcbf2_9ce4_8422_2325, 0x0100_0000_01b3);
 
+/// How long a picture may fill after a start or a jump before what is missing counts as late.
+const FILL: Duration = Duration::from_secs(5);
+
 /// A running hash over words.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunningHash(u64);
@@ -50,6 +53,7 @@ pub struct Record {
     frame_ms: Vec<(f64, bool)>,
     update_cpu_ms: Vec<f64>,
     late_blocks: u64,
+    filling: Option<Instant>,
     holes: Option<u64>,
     upload_max: usize,
     window_full: bool,
@@ -86,6 +90,7 @@ impl Record {
             frame_ms: Vec::new(),
             update_cpu_ms: Vec::new(),
             late_blocks: 0,
+            filling: None,
             holes: None,
             upload_max: 0,
             window_full: false,
@@ -127,7 +132,7 @@ impl Record {
         }
         self.updated = uploaded > 0;
         self.window_full = !window.is_jumping();
-        self.late_blocks += scenery.late();
+        self.add_late(scenery.late(), snapshot.jumps);
         if self.is_repeatable {
             self.mesh.add(window.mesh_hash());
         }
@@ -141,6 +146,19 @@ impl Record {
         }
         self.last = Some((eye_m, block, snapshot.jumps));
         self.frames += 1;
+    }
+
+    /// Adds what was late. After a start and after a jump the picture fills, which is not lateness, for [`FILL`] at most.
+    fn add_late(&mut self, late: u64, jumps: u32) {
+        if self.last.is_none_or(|(.., before)| before != jumps) {
+            self.filling = Some(Instant::now());
+        }
+        if late == 0 || self.filling.is_some_and(|since| since.elapsed() > FILL) {
+            self.filling = None;
+        }
+        if self.filling.is_none() {
+            self.late_blocks += late;
+        }
     }
 
     /// Adds the time of the last frame written down, where it is known only when the next begins.
