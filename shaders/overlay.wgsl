@@ -164,7 +164,7 @@ fn grain(place_m: vec2<f32>, size_m: f32, pixel_m: f32) -> f32 {
 }
 
 const ASPHALT: vec3<f32> = vec3<f32>(0.095, 0.096, 0.10);
-const CONCRETE: vec3<f32> = vec3<f32>(0.27, 0.26, 0.24);
+const CONCRETE: vec3<f32> = vec3<f32>(0.25, 0.242, 0.225);
 const PAINT: vec3<f32> = vec3<f32>(0.58, 0.58, 0.56);
 const YELLOW: vec3<f32> = vec3<f32>(0.55, 0.36, 0.04);
 
@@ -229,7 +229,7 @@ fn runway(kind: u32, at_m: vec2<f32>, half_m: f32, pixel_m: vec2<f32>) -> vec3<f
     }
     var albedo = ASPHALT * (1.05 + grain(at_m * vec2<f32>(0.25, 1.0), 5.0, pixel_m.y) * 0.22);
     if kind == RUNWAY_CONCRETE {
-        albedo = slabs(at_m, max(pixel_m.x, pixel_m.y)) * 0.9;
+        albedo = slabs(at_m, max(pixel_m.x, pixel_m.y)) * 0.85;
     }
     // Rubber where wheels touch down, mostly 200 to 700 m from the threshold and 2 to 5 m from the middle.
     let from_m = at_m.x - 420.0;

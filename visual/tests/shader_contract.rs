@@ -200,7 +200,9 @@ fn plants_and_canopy_are_the_same_on_both_sides() {
     assert_eq!((shader, span as usize), (tile, size_of::<TileEntry>()));
     let (_, span) = layout(&plants, "Plant");
     assert_eq!(span, 12);
-    let tile = host![CanopyTile: origin_m, cell_m, start_m, reach_m, crown_m, phase];
+    let tile = host![
+        CanopyTile: origin_m, cell_m, start_m, reach_m, crown_m, phase, turned_phase, turned_m, pad
+    ];
     let (shader, span) = layout(&parsed("canopy.wgsl"), "Tile");
     assert_eq!((shader, span as usize), (tile, size_of::<CanopyTile>()));
 
