@@ -46,7 +46,7 @@ fn detailed(root: vec3<f32>, places: vec4<f32>) -> Detail {
     var tilt = (coarse.rg - 0.5) * relief;
     // Tussocks among steppe, bushes on gravel; grass is more even than either.
     let clumps = (0.50 * dry + 0.50 * green + 0.40 * stone) * even;
-    let grains = (0.42 + 0.63 * stone) * even;
+    let grains = (0.55 + 0.50 * stone) * even;
     var shade = (coarse.b - 0.5) * clumps + (coarse.a - 0.5) * grains * 0.8;
     var hue = coarse.b - 0.5;
     if DETAIL > 1u {
