@@ -164,8 +164,8 @@ fn grain(place_m: vec2<f32>, size_m: f32, pixel_m: f32) -> f32 {
 }
 
 const ASPHALT: vec3<f32> = vec3<f32>(0.095, 0.096, 0.10);
-const CONCRETE: vec3<f32> = vec3<f32>(0.27, 0.26, 0.24);
-const PAINT: vec3<f32> = vec3<f32>(0.58, 0.58, 0.56);
+const CONCRETE: vec3<f32> = vec3<f32>(0.25, 0.242, 0.225);
+const PAINT: vec3<f32> = vec3<f32>(0.68, 0.68, 0.66);
 const YELLOW: vec3<f32> = vec3<f32>(0.55, 0.36, 0.04);
 
 fn road(kind: u32, at_m: vec2<f32>, half_m: f32, pixel_m: vec2<f32>) -> vec3<f32> {
@@ -229,7 +229,7 @@ fn runway(kind: u32, at_m: vec2<f32>, half_m: f32, pixel_m: vec2<f32>) -> vec3<f
     }
     var albedo = ASPHALT * (1.05 + grain(at_m * vec2<f32>(0.25, 1.0), 5.0, pixel_m.y) * 0.22);
     if kind == RUNWAY_CONCRETE {
-        albedo = slabs(at_m, max(pixel_m.x, pixel_m.y)) * 0.9;
+        albedo = slabs(at_m, max(pixel_m.x, pixel_m.y)) * 0.85;
     }
     // Rubber where wheels touch down, mostly 200 to 700 m from the threshold and 2 to 5 m from the middle.
     let from_m = at_m.x - 420.0;
@@ -255,7 +255,7 @@ fn overlay_fragment(draped: Draped) -> @location(0) vec4<f32> {
     if half_m.x > 0.0 {
         let pixels = 2.0 * half_m.x / pixel_m.y;
         if kind == WHITE {
-            cover = clamp((half_m.x - abs(at_m.y)) / pixel_m.y + 0.25, 0.0, 1.0) * smoothstep(0.15, 0.9, pixels);
+            cover = clamp((half_m.x - abs(at_m.y)) / pixel_m.y + 0.35, 0.0, 1.0) * smoothstep(0.1, 0.7, pixels);
         } else {
             // What is thinner than a pixel is drawn a pixel wide, and fades.
             cover = clamp((max(half_m.x, 0.5 * pixel_m.y) - abs(at_m.y)) / pixel_m.y + 0.5, 0.0, 1.0);
@@ -268,7 +268,7 @@ fn overlay_fragment(draped: Draped) -> @location(0) vec4<f32> {
         cover = 1.0 - smoothstep(0.5, 1.5, pixel_m.y);
     }
     if half_m.y > 0.0 {
-        cover *= clamp((half_m.y - abs(at_m.x)) / pixel_m.x, 0.0, 1.0);
+        cover *= clamp((half_m.y - abs(at_m.x)) / pixel_m.x + 0.35, 0.0, 1.0);
     }
 
     var colour = vec3<f32>(0.0);

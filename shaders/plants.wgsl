@@ -106,15 +106,21 @@ fn stand_of(index: u32) -> Stand {
     // One by one the plants of a tier leave, each shrinking over the last tenth of its own way.
     let gone_m = tile.reach_m * mix(tile.full, 1.0, looks.z);
     let grown = clamp((gone_m - stand.distance_m) / (0.12 * gone_m), 0.0, 1.0);
-    stand.tall_m = mix(kind.height_m.x, kind.height_m.y, looks.y) * grown;
+    let tall_m = mix(kind.height_m.x, kind.height_m.y, looks.y);
+    // What is less than about two pixels high would only speckle: it shrinks into the ground, which has its colour.
+    let pixels = tall_m * frame.focal_px / max(stand.distance_m, 1.0);
+    stand.tall_m = tall_m * grown * smoothstep(1.2, 2.6, pixels);
     stand.wide_m = stand.tall_m * kind.width * (0.85 + 0.3 * looks.w);
     return stand;
 }
 
 fn crown_colour(species: u32, tint: f32, turn: f32) -> vec3<f32> {
-    // No two plants are of one shade: lighter and darker, a little to yellow or blue.
-    let warm = (turn - 0.5) * 0.22;
-    return kinds[species].colour.rgb * (0.72 + 0.56 * tint) * vec3<f32>(1.0 + warm, 1.0, 1.0 - warm);
+    // No two plants are of one shade: lighter and darker, greyer and greener, a little to yellow or blue.
+    let warm = (turn - 0.5) * 0.34;
+    let pure = kinds[species].colour.rgb;
+    let grey = vec3<f32>(dot(pure, vec3<f32>(0.2126, 0.7152, 0.0722)));
+    let colour = mix(pure, grey, 0.28 * fract(tint * 16.0));
+    return colour * (0.60 + 0.68 * tint) * vec3<f32>(1.0 + warm, 1.0, 1.0 - warm);
 }
 
 // From where a plant is a triangle: a conifer looks like one early; each changes at a distance of its own.

@@ -109,7 +109,10 @@ fn water_fragment(surface: WaterSurface) -> @location(0) vec4<f32> {
     if DETAIL > 0u {
         near = textureSample(detail_texture, detail_sampler, mix(surface.detail.xy, ripple_at, wet));
     }
-    let ground = lit(map.rgb * map.rgb * mix(0.6 + 0.8 * near.b, 1.0, wet), light, (near.rg - 0.5) * 0.3 * (1.0 - wet));
+    // Within a texel of the shore the map's colour is half the beach's: water has its own there, as the map's SHALLOW.
+    let open_water = smoothstep(0.5, 0.78, map.a);
+    let bed = mix(map.rgb * map.rgb, mix(vec3<f32>(0.030, 0.085, 0.090), map.rgb * map.rgb, open_water), wet);
+    let ground = lit(bed * mix(0.6 + 0.8 * near.b, 1.0, wet), light, (near.rg - 0.5) * 0.3 * (1.0 - wet));
 
     let distance_m = length(surface.relative_m);
     let to_eye = surface.relative_m * (-1.0 / distance_m);

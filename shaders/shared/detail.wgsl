@@ -45,8 +45,8 @@ fn detailed(root: vec3<f32>, places: vec4<f32>) -> Detail {
     let relief = (0.10 + 0.75 * stone + 0.16 * dry) * even;
     var tilt = (coarse.rg - 0.5) * relief;
     // Tussocks among steppe, bushes on gravel; grass is more even than either.
-    let clumps = (0.95 * dry + 0.75 * green + 0.45 * stone) * even;
-    let grains = (0.30 + 0.75 * stone) * even;
+    let clumps = (0.50 * dry + 0.50 * green + 0.40 * stone) * even;
+    let grains = (0.55 + 0.50 * stone) * even;
     var shade = (coarse.b - 0.5) * clumps + (coarse.a - 0.5) * grains * 0.8;
     var hue = coarse.b - 0.5;
     if DETAIL > 1u {
@@ -57,8 +57,10 @@ fn detailed(root: vec3<f32>, places: vec4<f32>) -> Detail {
         shade += (fine.b - 0.5) * clumps * 1.1 + (fine.a - 0.5) * grains;
         hue += 0.7 * (fine.b - 0.5);
     }
-    // Light clumps are dry and yellow, dark ones green.
-    let tint = vec3<f32>(0.24, 0.10, -0.10) * (hue * (dry + green));
+    // Dark clumps are never as dark as light ones are light: among steppe soil and straw show between the leaves.
+    shade = max(shade, 0.0) + 0.7 * min(shade, 0.0);
+    // Light clumps of grass are dry and yellow, dark ones green; among steppe dark ones are brown.
+    let tint = hue * (vec3<f32>(0.24, 0.10, -0.10) * green + vec3<f32>(-0.04, 0.02, 0.10) * dry);
     var detail: Detail;
     detail.albedo = root * root * max(1.0 + shade + tint, vec3<f32>(0.25));
     detail.tilt = tilt;

@@ -203,6 +203,18 @@ impl Nursery {
         planted
     }
 
+    /// Share of the plants that open ground has water for: few in dry lands down low, where streams alone have trees.
+    fn moisture(&self, cover: CoverClass, height_m: f32) -> f32 {
+        let kept = match cover {
+            CoverClass::Grass => 0.06,
+            CoverClass::Field => 0.25,
+            CoverClass::Scrub => 0.5,
+            _ => return 1.0,
+        };
+        let wet = ((height_m / self.flora.tree_line_m - 0.35) * 4.0).clamp(0.0, 1.0);
+        1.0 - self.flora.dryness * (1.0 - kept) * (1.0 - wet)
+    }
+
     /// The plant of a hash cell, before clearings and lakes.
     fn plant(&self, tier: &Tier, tile: TileIndex, corner: DVec2, column: u32, row: u32, share: f32) -> Option<Plant> {
         let cells = tier.cells as i32;
@@ -233,7 +245,16 @@ impl Nursery {
         if rank >= dense {
             return None;
         }
+        // A ragged edge ends at the water, at sand and at tarmac.
+        let here = self.cover().class_at(plan.x, plan.y);
+        if matches!(here, CoverClass::Water | CoverClass::Sand | CoverClass::Paved) {
+            return None;
+        }
         let (height_m, normal) = self.area.height_and_normal(plan.x, plan.y)?;
+        // Level ground at 0 m is the sea, as the ground map has it.
+        if height_m.abs() < SEA_M || rank >= dense * self.moisture(cover, height_m as f32) {
+            return None;
+        }
         let steep = (1.0 - normal.y * normal.y).max(0.0).sqrt() as f32;
         plant.height_m = height_m as f32;
         let species = self.flora.choose(site, plant.height_m, steep, uniform(kinds[1]))?;
@@ -249,6 +270,9 @@ impl Nursery {
         Some(plant)
     }
 }
+
+/// Ground nearer to 0 m than this is the sea, as [`terrain::block::ground_map`] has it, metres.
+const SEA_M: f64 = 0.5;
 
 /// Share of a tier's cells that hold a plant on a cover.
 fn density(tier: &Tier, cover: CoverClass) -> f32 {

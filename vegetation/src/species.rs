@@ -231,7 +231,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: DRY,
         steepest: 0.9,
         weights: [0.0, 0.0, 0.0, 1.0, 1.0, 0.0],
-        colour: [0.052, 0.068, 0.034],
+        colour: [0.064, 0.072, 0.042],
     },
     // Caragana, Rosa, Berberis and the like, hazel and thorn in Europe: 1-4 m.
     Species {
@@ -244,7 +244,7 @@ pub const SPECIES: [Species; 14] = [
         dryness: ALL_DRYNESS,
         steepest: 0.8,
         weights: [0.05, 0.10, 0.08, 1.0, 0.8, 0.5],
-        colour: [0.066, 0.076, 0.032],
+        colour: [0.086, 0.086, 0.044],
     },
     // Pinus halepensis 10-20 m and Quercus ilex 8-20 m, to about 1,000 m: European Atlas of Forest Tree Species, 2016.
     Species {
@@ -268,7 +268,8 @@ pub struct Flora {
     pub tree_line_m: f32,
     /// Latitude without sign, degrees.
     latitude_deg: f32,
-    dryness: f32,
+    /// [`Climate::dryness`].
+    pub dryness: f32,
 }
 
 impl Site {

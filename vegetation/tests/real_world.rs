@@ -73,8 +73,9 @@ fn the_population_is_frozen_in_any_order() {
     assert_eq!(found, FROZEN, "{found:#018x?}");
 }
 
-/// Found once; a change moves every tree of every world.
-const FROZEN: [u64; 3] = [0x596a_faee_d506_78b1, 0x8654_511c_5d48_394c, 0xda80_b0c4_51e1_03a2];
+/// Found once; a change moves every tree of every world. The first was found again when plants of dry open ground were
+/// thinned and those at the water's edge taken away: no plant moved, some are gone.
+const FROZEN: [u64; 3] = [0x46a7_5a9d_aca6_e3ce, 0x8654_511c_5d48_394c, 0xda80_b0c4_51e1_03a2];
 
 #[test]
 fn every_plant_of_the_near_blocks_stands_on_the_ground() {

@@ -12,7 +12,9 @@
 //! below the horizon takes the horizon's value, so ground that fades into it meets the sky without a rim.
 //!
 //! Light is relative: the sun above the air gives an irradiance of 1, and everything handed out is already multiplied
-//! by an exposure chosen from the light ([`Light::exposure`]), so that a table of 16-bit floats serves day and night.
+//! by an exposure chosen from the light ([`Light::exposure`]), so that a table of 16-bit floats serves day and night. The
+//! one thing beside it that is of the eye and not of the air: under a low sun half of the colour of the sky's light on the
+//! ground is taken for white (chromatic adaptation); the sky itself keeps its colours.
 //!
 //! Sources: T. Nishita et al., Display of the Earth taking into account atmospheric scattering, 1993 (single
 //! scattering); S. Hillaire, A scalable and production ready sky and atmosphere rendering technique, 2020 (series and
@@ -43,15 +45,20 @@ const FOG_SCALE_M: f32 = 100.0;
 const FOG_TO_HAZE_M: [f64; 2] = [1_000.0, 8_000.0];
 /// Height over which molecules thin by a factor e, metres.
 pub const MOLECULE_SCALE_HEIGHT_M: f32 = 8_000.0;
-/// Scattering by molecules at sea level, per metre, for red, green, blue.
-pub const MOLECULES_PER_M: Vec3 = Vec3::new(5.802e-6, 13.558e-6, 33.1e-6);
+/// Scattering by molecules at sea level, per metre, for red, green, blue: Bucholtz's 1.2406e-6 over the fourth power of the
+/// wavelength in micrometres, at [the display's own](OZONE_PER_M).
+pub const MOLECULES_PER_M: Vec3 = Vec3::new(8.90e-6, 13.558e-6, 26.8e-6);
 /// Optical depth at which contrast is 2 %.
 pub const KOSCHMIEDER: f32 = 3.912;
 
 /// Shares of red, green and blue in luminance (IEC 61966-2-1).
 const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
-const OZONE_PER_M: Vec3 = Vec3::new(0.650e-6, 1.881e-6, 0.085e-6);
+/// Absorption by ozone at its densest, per metre, at 611, 550 and 464 nm, where the display's primaries lie (IEC 61966-2-1: the
+/// dominant wavelengths). The usual red of 680 nm is beyond ozone's band, which takes yellow, orange and red alike: with it
+/// twilight, whose light goes a long way through ozone, loses its green alone and turns purple instead of blue.
+/// Cross-sections: 4.25e-25, 3.50e-25 and 0.42e-25 m2 (V. Gorshelev, A. Serdyuchenko 2014).
+const OZONE_PER_M: Vec3 = Vec3::new(2.284e-6, 1.881e-6, 0.226e-6);
 const HAZE_ALBEDO: f32 = 0.9;
 /// Below the usual 0.8, which one lobe needs to match the glow within a few degrees of the sun but which makes the sky
 /// too bright at 10 to 30 degrees; the pass draws the close glow itself.
@@ -181,7 +188,8 @@ impl Air {
                 Vec3::ZERO
             }
         };
-        let sky_irradiance = self.sky_irradiance(surface_m, sun) + NIGHT_GROUND + moonlit(surface_m, 0.7, 20) * PI;
+        let sky_irradiance = adapted(self.sky_irradiance(surface_m, sun), sun_sin);
+        let sky_irradiance = sky_irradiance + NIGHT_GROUND + moonlit(surface_m, 0.7, 20) * PI;
         let all = sun_irradiance * sun_sin.max(0.6) + sky_irradiance + moon_irradiance * moon_sin.max(0.0);
         let exposure = exposure(all);
 
@@ -445,6 +453,14 @@ pub fn exposure(irradiance: Vec3) -> f32 {
     const DEEP_DUSK: f32 = 0.01;
     let luminance = irradiance.dot(LUMINANCE).max(1e-7);
     3.1 * luminance.max(DEEP_DUSK).powf(-0.6) * (luminance / DEEP_DUSK).min(1.0).powf(-1.0)
+}
+
+/// Light of the whole sky as an eye adapted to it sees it: under a low sun, where it is all the light there is, half as far
+/// from white as it is. By day the sun decides what white is.
+fn adapted(sky: Vec3, sun_sin: f32) -> Vec3 {
+    const SHARE: f32 = 0.5;
+    let low = ((0.12 - sun_sin) / 0.14).clamp(0.0, 1.0);
+    sky.lerp(Vec3::splat(sky.dot(LUMINANCE)), SHARE * low)
 }
 
 fn rayleigh_phase(cosine: f32) -> f32 {

@@ -200,7 +200,9 @@ fn plants_and_canopy_are_the_same_on_both_sides() {
     assert_eq!((shader, span as usize), (tile, size_of::<TileEntry>()));
     let (_, span) = layout(&plants, "Plant");
     assert_eq!(span, 12);
-    let tile = host![CanopyTile: origin_m, cell_m, start_m, reach_m, crown_m, phase];
+    let tile = host![
+        CanopyTile: origin_m, cell_m, start_m, reach_m, crown_m, phase, turned_phase, turned_m, pad
+    ];
     let (shader, span) = layout(&parsed("canopy.wgsl"), "Tile");
     assert_eq!((shader, span as usize), (tile, size_of::<CanopyTile>()));
 
@@ -253,6 +255,8 @@ fn fragments_read_few_textures_and_none_in_a_loop() {
             let (count, in_loop) = samples(&module, entry);
             let most = match (*name, entry.stage) {
                 ("terrain.wgsl", naga::ShaderStage::Fragment) => 4,
+                // Crowns at two scales, or their repeats show from above.
+                ("canopy.wgsl", naga::ShaderStage::Fragment) => 2,
                 (_, naga::ShaderStage::Fragment) => 1,
                 // The vertex stage does the work: only loops are forbidden there.
                 _ => usize::MAX,

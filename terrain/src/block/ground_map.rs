@@ -197,13 +197,14 @@ fn strip_colour(kind: StripKind) -> [f32; 3] {
         StripKind::Water => WATER,
         StripKind::Gravel => [0.230, 0.200, 0.165],
         StripKind::Asphalt => [0.085, 0.085, 0.088],
-        StripKind::Concrete => [0.300, 0.295, 0.280],
+        StripKind::Concrete => [0.225, 0.220, 0.205],
     }
 }
 
-const FOREST: [f32; 3] = [0.020, 0.036, 0.017];
-const BROADLEAF: [f32; 3] = [0.036, 0.060, 0.021];
-const MIXED_FOREST: [f32; 3] = [0.027, 0.047, 0.019];
+// Of closed forest seen from far, the shade between the crowns included; nearer by, trees stand on it.
+const FOREST: [f32; 3] = [0.026, 0.040, 0.019];
+const BROADLEAF: [f32; 3] = [0.041, 0.061, 0.022];
+const MIXED_FOREST: [f32; 3] = [0.033, 0.050, 0.020];
 const SNOW: [f32; 3] = [0.78, 0.80, 0.83];
 
 /// Linear albedo by the belts.
@@ -219,7 +220,7 @@ fn albedo(site: Site, climate: &Climate, x_m: f64, z_m: f64, shore_m: f32) -> [f
     const ICE: [f32; 3] = [0.56, 0.65, 0.72];
     const SHALLOW: [f32; 3] = [0.030, 0.085, 0.090];
     const DEEP: [f32; 3] = [0.008, 0.030, 0.048];
-    const BEACH: [f32; 3] = [0.33, 0.29, 0.22];
+    const BEACH: [f32; 3] = [0.27, 0.235, 0.175];
 
     if shore_m < 0.0 {
         return mix(SHALLOW, DEEP, smooth(0.0, 1_400.0, -shore_m));
@@ -236,7 +237,9 @@ fn albedo(site: Site, climate: &Climate, x_m: f64, z_m: f64, shore_m: f32) -> [f
     colour = mix(colour, SCREE, belts.scree);
     colour = mix(colour, ROCK, belts.rock);
     colour = mix(colour, mix(SNOW, ICE, belts.ice), belts.snow);
-    colour = mix(colour, BEACH, 0.8 * belts.beach);
+    // A strip of sand, narrower than what the cover takes for shore, and none where the shore is steep.
+    let sand = 0.75 * (1.0 - smooth(10.0, 130.0, shore_m)) * (1.0 - smooth(0.05, 0.16, site.steep));
+    colour = mix(colour, BEACH, sand.min(belts.beach));
     // No two patches of one cover are the same shade; snow hardly varies.
     let uneven = 0.34 * (belts.fine - 0.5) + 0.18 * (belts.middle - 0.5) + 0.30 * (belts.gully - 0.5);
     let shade = 1.0 + (1.0 - 0.8 * belts.snow) * uneven;

@@ -25,6 +25,10 @@ const START_M: f32 = 420.0;
 const REACH_M: f64 = 13_000.0;
 /// Side of the crown texture on the ground, metres: crowns of some 6 m.
 const CROWN_M: f64 = 120.0;
+/// The same of its second scale: no small multiple of the first, so that the two repeat together nowhere in sight.
+const TURNED_M: f64 = 197.0;
+/// East of the second scale as cosine and sine of its turn, as in the shader's `turned`: 36.87 degrees.
+const TURN: DVec2 = DVec2::new(0.8, 0.6);
 /// Bytes handed to the GPU a frame.
 const BUDGET_BYTES: usize = 200 << 10;
 /// Tiles that may be drawn in a frame, and how far apart their entries lie in the table.
@@ -47,6 +51,12 @@ pub struct CanopyTile {
     pub crown_m: f32,
     /// Of the crown texture at the tile's corner.
     pub phase: [f32; 2],
+    /// The same of its second scale.
+    pub turned_phase: [f32; 2],
+    /// Side of the crown texture on the ground at its second scale, metres.
+    pub turned_m: f32,
+    /// Unused.
+    pub pad: f32,
 }
 
 /// A corner as the shader takes it.
@@ -192,6 +202,7 @@ impl CanopyPass {
             let corner = self.tiles.corner_m(*tile);
             let origin = corner - eye;
             let phase = (corner / CROWN_M).map(|at| at - at.floor());
+            let turned_phase = (TURN.rotate(corner) / TURNED_M).map(|at| at - at.floor());
             let bytes = CanopyTile {
                 origin_m: origin.as_vec2().to_array(),
                 cell_m: self.cell_m as f32,
@@ -199,6 +210,9 @@ impl CanopyPass {
                 reach_m: self.reach_m as f32,
                 crown_m: CROWN_M as f32,
                 phase: phase.as_vec2().to_array(),
+                turned_phase: turned_phase.as_vec2().to_array(),
+                turned_m: TURNED_M as f32,
+                pad: 0.0,
             };
             table.extend_from_slice(bytemuck::bytes_of(&bytes));
             table.resize((entry + 1) * ENTRY as usize, 0);
