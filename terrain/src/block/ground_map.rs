@@ -296,7 +296,8 @@ mod tests {
     fn an_area_has_its_colour_and_a_soft_edge() {
         let field = synthetic::ridges(Grid::centred(200.0, 2, 2).unwrap(), 4);
         let climate = Climate::new(0.74, 1_500.0);
-        let ring = [(0.0, -6_000.0), (2_330.0, -6_000.0), (2_330.0, 0.0), (0.0, 0.0)].map(DVec2::from).to_vec();
+        let (side_m, edge_m) = (field.grid().block_m(), field.grid().block_m() * 24.47 / f64::from(SIDE - 1));
+        let ring = [(0.0, -side_m), (edge_m, -side_m), (edge_m, 0.0), (0.0, 0.0)].map(DVec2::from).to_vec();
         let areas = vec![LandArea { cover: CoverClass::Snow, rings: vec![ring] }];
         let features = Features { areas, ..Features::default() };
         let cover = bake_cover(&field, &Lakes::default(), &features, &climate);
