@@ -1,6 +1,6 @@
 // plants.wgsl: draws plants as meshes near the eye, as cards that face it farther away, and as single triangles far away.
-// Reads:  group 0 frame; group 1 the window's light maps (vertex stage); group 2 species and pictures; group 3 a tile's
-//         place and plants. Cards and triangles have no vertex buffer: a plant is four or three vertices in a row.
+// Reads:  group 0 frame; group 1 the window's light maps (vertex stage); group 2 species and pictures; group 3 the
+//         plants in sight. Cards and triangles have no vertex buffer: a plant is four or three vertices in a row.
 // Writes: display colour; reverse-Z depth, near / distance. Cut out by alpha, never blended.
 // Host:   visual/src/passes/plants.rs
 // Twin:   vegetation/src/pictures.rs ELEVATIONS_RAD and the frame of a card's picture.
@@ -18,22 +18,17 @@ struct Species {
     colour: vec4<f32>,      // linear albedo of the crown; the shape's own width
 }
 
-struct Tile {
-    origin_m: vec2<f32>,    // east and south of the eye
-    part_m: f32,            // a part of the side
-    reach_m: f32,           // where the last of the plants is gone
-    full: f32,              // share of reach up to which all stand
-    mesh_m: f32,            // nearer plants are meshes
-    far_m: f32,             // farther ones are triangles
-    pad: f32,
+// A plant in sight.
+struct Plant {
+    foot_x_m: f32,          // relative to the eye
+    foot_y_m: f32,
+    foot_z_m: f32,
+    tall_m: f32,            // as it stands now
+    looks: u32,             // species, size, turn, tint
 }
 
-// Where a plant stands and what it is, as 12 bytes.
-struct Plant {
-    at: u32,
-    height: u32,
-    looks: u32,
-}
+// Up to where tall plants are meshes.
+override MESH_M: f32 = 200.0;
 
 const LEAVES: u32 = 3u;
 const ELEVATIONS: u32 = 3u;
@@ -41,8 +36,7 @@ const ELEVATIONS: u32 = 3u;
 @group(2) @binding(0) var<uniform> kinds: array<Species, 32>;
 @group(2) @binding(1) var pictures: texture_2d_array<f32>;
 @group(2) @binding(2) var picture_sampler: sampler;
-@group(3) @binding(0) var<uniform> tile: Tile;
-@group(3) @binding(1) var<storage, read> plants: array<Plant>;
+@group(3) @binding(0) var<storage, read> plants: array<Plant>;
 
 struct Stand {
     foot_m: vec3<f32>,      // relative to the eye
@@ -92,25 +86,15 @@ fn light_under(relative_m: vec2<f32>) -> vec4<f32> {
 
 fn stand_of(index: u32) -> Stand {
     let plant = plants[index];
-    let at = vec2<f32>(f32(plant.at & 0xffffu), f32(plant.at >> 16u));
     let looks = unpack4x8unorm(plant.looks);
     var stand: Stand;
     stand.species = plant.looks & 0xffu;
-    let plan_m = tile.origin_m + at * tile.part_m;
-    let height_m = bitcast<f32>(plant.height);
-    stand.foot_m = vec3<f32>(plan_m.x, (height_m - frame.eye_high_m.y) - frame.eye_low_m.y, plan_m.y);
+    stand.foot_m = vec3<f32>(plant.foot_x_m, plant.foot_y_m, plant.foot_z_m);
     stand.distance_m = length(stand.foot_m);
-    let kind = kinds[stand.species];
     stand.turn = looks.z;
     stand.tint = looks.w;
-    // One by one the plants of a tier leave, each shrinking over the last tenth of its own way.
-    let gone_m = tile.reach_m * mix(tile.full, 1.0, looks.z);
-    let grown = clamp((gone_m - stand.distance_m) / (0.12 * gone_m), 0.0, 1.0);
-    let tall_m = mix(kind.height_m.x, kind.height_m.y, looks.y);
-    // What is less than about two pixels high would only speckle: it shrinks into the ground, which has its colour.
-    let pixels = tall_m * frame.focal_px / max(stand.distance_m, 1.0);
-    stand.tall_m = tall_m * grown * smoothstep(1.2, 2.6, pixels);
-    stand.wide_m = stand.tall_m * kind.width * (0.85 + 0.3 * looks.w);
+    stand.tall_m = plant.tall_m;
+    stand.wide_m = stand.tall_m * kinds[stand.species].width * (0.85 + 0.3 * looks.w);
     return stand;
 }
 
@@ -123,32 +107,10 @@ fn crown_colour(species: u32, tint: f32, turn: f32) -> vec3<f32> {
     return colour * (0.60 + 0.68 * tint) * vec3<f32>(1.0 + warm, 1.0, 1.0 - warm);
 }
 
-// From where a plant is a triangle: a conifer looks like one early; each changes at a distance of its own.
-fn card_reach(stand: Stand) -> f32 {
-    return tile.far_m * select(1.0, 0.6, kinds[stand.species].shape < 1.5) * (0.8 + 0.2 * stand.turn);
-}
-
 // How far a plant has changed from a mesh to a card; the host's `mesh_reach_m` is where this is 1.
 fn meshless(distance_m: f32, tall_m: f32) -> f32 {
-    let reach_m = tile.mesh_m * clamp(tall_m / 20.0, 0.2, 1.0);
+    let reach_m = MESH_M * clamp(tall_m / 20.0, 0.2, 1.0);
     return clamp((distance_m - 0.85 * reach_m) / (0.15 * reach_m), 0.0, 1.0);
-}
-
-// All corners of a plant that is not drawn: a triangle without area, inside the view. Outside of it, a software device would
-// send it, and with it all that is drawn in one batch, through its clipper, which costs more than all else.
-fn hidden() -> vec4<f32> {
-    return vec4<f32>(0.0, 0.0, 0.5, 1.0);
-}
-
-// Whether a plant about a point is wholly beside the view.
-fn is_beside(middle_m: vec3<f32>, around_m: f32) -> bool {
-    let at = frame.clip_from_relative * vec4<f32>(middle_m, 1.0);
-    let row = frame.clip_from_relative;
-    let wide = length(vec3<f32>(row[0].x, row[1].x, row[2].x));
-    let high = length(vec3<f32>(row[0].y, row[1].y, row[2].y));
-    // A margin over what the edges' slopes ask for: sqrt(1 + scale^2).
-    let room = around_m * (vec2<f32>(wide, high) + 1.0);
-    return at.w < -around_m || any(abs(at.xy) > vec2<f32>(at.w) + room);
 }
 
 @vertex
@@ -157,11 +119,6 @@ fn card_vertex(@builtin(vertex_index) index: u32) -> Card {
     var card: Card;
     let gone = 1.0 - meshless(stand.distance_m, stand.tall_m);
     let middle_m = stand.foot_m + vec3<f32>(0.0, 0.5 * stand.tall_m, 0.0);
-    if gone >= 1.0 || stand.distance_m >= card_reach(stand) || stand.tall_m <= 0.0
-        || is_beside(middle_m, stand.tall_m + stand.wide_m) {
-        card.clip = hidden();
-        return card;
-    }
     let kind = kinds[stand.species];
     let to_eye = -normalize(middle_m);
     let level = normalize(vec3<f32>(-to_eye.z, 0.0, to_eye.x) + vec3<f32>(1e-6, 0.0, 0.0));
@@ -225,12 +182,6 @@ fn card_fragment(card: Card) -> @location(0) vec4<f32> {
 fn far_vertex(@builtin(vertex_index) index: u32) -> Plain {
     let stand = stand_of(index / 3u);
     var plain: Plain;
-    if stand.distance_m < card_reach(stand) || stand.tall_m <= 0.0
-        || is_beside(stand.foot_m, stand.tall_m + stand.wide_m) {
-        plain.clip = hidden();
-        return plain;
-    }
-    let kind = kinds[stand.species];
     let to_eye = -normalize(stand.foot_m);
     let right = normalize(vec3<f32>(to_eye.z, 0.0, -to_eye.x) + vec3<f32>(1e-6, 0.0, 0.0));
     let up = cross(to_eye, right);

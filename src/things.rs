@@ -89,7 +89,7 @@ impl Things {
             overlay.prepare(0, view, terrain);
         }
         if let Some(plants) = &mut self.plants {
-            plants.follow(gpu, eye_m, speed_mps);
+            plants.follow(eye_m, speed_mps);
             plants.prepare(gpu, 0, view);
         }
         if let Some(canopy) = &mut self.canopy {

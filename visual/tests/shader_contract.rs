@@ -7,7 +7,8 @@ use terrain::block::window::MAX_BLOCKS;
 use visual::passes::canopy::CanopyTile;
 use visual::passes::lights::{LightInstance, LightsUniforms};
 use visual::passes::lines::Segment;
-use visual::passes::plants::{MOST_SPECIES, SpeciesEntry, TileEntry};
+use visual::passes::plants::{MOST_SPECIES, SpeciesEntry};
+use visual::passes::plants_seen::Stand;
 use visual::passes::terrain::{BlockEntry, WindowUniforms};
 use visual::shaders;
 use visual::uniforms::FrameUniforms;
@@ -195,11 +196,8 @@ fn plants_and_canopy_are_the_same_on_both_sides() {
     let plants = parsed("plants.wgsl");
     let (shader, span) = layout(&plants, "Species");
     assert_eq!((shader, span as usize), (species, size_of::<SpeciesEntry>()));
-    let tile = host![TileEntry: origin_m, part_m, reach_m, full, mesh_m, far_m, pad];
-    let (shader, span) = layout(&plants, "Tile");
-    assert_eq!((shader, span as usize), (tile, size_of::<TileEntry>()));
     let (_, span) = layout(&plants, "Plant");
-    assert_eq!(span, 12);
+    assert_eq!(span as usize, size_of::<Stand>());
     let tile = host![
         CanopyTile: origin_m, cell_m, start_m, reach_m, crown_m, phase, turned_phase, turned_m, pad
     ];

@@ -10,6 +10,7 @@ pub mod objects;
 pub mod overlay;
 pub mod particles;
 pub mod plants;
+pub mod plants_seen;
 pub mod sky;
 pub mod terrain;
 pub mod terrain_textures;

@@ -1,45 +1,31 @@
 //! Draws single plants: meshes near the eye, cards that face it farther away, triangles far away.
 //! Shader: `shaders/plants.wgsl`.
 //!
-//! Each of the three tiers of [`vegetation::place`] streams its tiles by a thread of its own. A tile's plants are one storage buffer,
-//! written once; a card is four vertices that read it. [`Plants::prepare`] picks the parts of tiles that a view sees and gathers the
-//! few plants near the eye that are drawn as meshes. A plant changes from mesh to card by dissolving over the last part of the
-//! meshes' reach, and leaves at the end of its own reach by shrinking, so nothing appears at once.
+//! Each of the three tiers of [`vegetation::place`] streams its tiles by a thread of its own. [`Plants::prepare`] sorts out
+//! which plants a view sees and as what ([`super::plants_seen`]) and sends those as one list; a card is four vertices that read
+//! it. A plant changes from mesh to card by dissolving over the last part of the meshes' reach, and leaves at the end of its own
+//! reach by shrinking, so nothing appears at once.
 //!
 //! Invariant: a tile's origin is subtracted from the eye in f64; what a world does not have makes no [`Plants`].
 
 use super::TargetFormat;
-use crate::camera::{Frustum, View};
+use super::plants_seen::{self, MESH_M, Near, Seen, Stand};
+use crate::camera::View;
 use crate::gpu::Gpu;
 use crate::shaders;
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 use terrain::near::{Change, NearTiles, Settings, TileIndex};
 use vegetation::detail::{self, WIDTHS};
 use vegetation::pictures;
-use vegetation::place::{Nursery, PARTS, Planted, SQUARES, TIERS, Tier};
+use vegetation::place::{Nursery, Planted, TIERS, Tier};
 use vegetation::species::{SHAPES, SPECIES};
 
-/// Up to where tall plants are meshes, metres; low ones change sooner.
-pub const MESH_M: f64 = 200.0;
-/// From where plants are single triangles, metres.
-pub const FAR_M: f64 = 1_400.0;
-/// From where conifers are, which look like one early; as the shader's `card_reach`.
-const CONIFER_FAR_M: f64 = 0.6 * FAR_M;
-/// Each plant changes somewhere between this share of that and all of it.
-const FAR_SPREAD: f64 = 0.8;
-/// A plant so tall is a mesh up to [`MESH_M`].
-const TALL_M: f32 = 20.0;
-/// Most that a plant may stand above its foot, metres.
-const MOST_TALL_M: f32 = 45.0;
 /// Bytes handed to the GPU a frame and tier.
 const BUDGET_BYTES: usize = 200 << 10;
-/// Tiles that may be drawn in a frame, and how far apart their entries lie in the table.
-const MOST_TILES: usize = 512;
-const ENTRY: u64 = 256;
 /// Meshes in a view at most.
 const MOST_MESHES: usize = 6_000;
 
@@ -55,40 +41,6 @@ pub struct SpeciesEntry {
     pub shape: f32,
     /// Linear albedo; the width that the shape's pictures are made for.
     pub colour: [f32; 4],
-}
-
-/// Mirror of the shader's `Tile`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct TileEntry {
-    /// East and south of the eye, metres.
-    pub origin_m: [f32; 2],
-    /// A part of the side, metres.
-    pub part_m: f32,
-    /// Where the last of the plants is gone, metres.
-    pub reach_m: f32,
-    /// Share of reach up to which all stand.
-    pub full: f32,
-    /// Nearer plants are meshes, metres.
-    pub mesh_m: f32,
-    /// Farther ones are triangles, metres.
-    pub far_m: f32,
-    /// Unused.
-    pub pad: f32,
-}
-
-/// A plant drawn as a mesh.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Near {
-    foot_m: [f32; 3],
-    looks: u32,
-}
-
-impl Near {
-    fn distance_squared(&self) -> f32 {
-        Vec3::from_array(self.foot_m).length_squared()
-    }
 }
 
 /// A corner of a model.
@@ -117,35 +69,18 @@ pub struct PlantCounts {
     pub draw_calls: usize,
 }
 
-/// What a tile brings to the render thread.
-struct Grown {
-    planted: Planted,
-    words: Vec<[u32; 3]>,
-}
-
-struct Shown {
-    grown: Arc<Grown>,
-    group: wgpu::BindGroup,
-}
-
 struct TierTiles {
     tier: Tier,
-    tiles: NearTiles<Grown>,
-    shown: HashMap<TileIndex, Shown>,
-}
-
-/// Something to draw: a tile's group, its entry, and plants.
-struct Draw {
-    distance_m: f32,
-    far: bool,
-    group: wgpu::BindGroup,
-    entry: u32,
-    plants: Range<u32>,
+    tiles: NearTiles<Planted>,
+    shown: HashMap<TileIndex, Arc<Planted>>,
 }
 
 #[derive(Default)]
 struct ViewDraws {
-    draws: Vec<Draw>,
+    /// Cards, then triangles, and a group with them.
+    stands: Option<(wgpu::Buffer, wgpu::BindGroup)>,
+    cards: Range<u32>,
+    far: Range<u32>,
     near: Option<wgpu::Buffer>,
     /// Instances of each shape.
     meshes: [Range<u32>; SHAPES],
@@ -157,10 +92,9 @@ pub struct Plants {
     tiers: Vec<TierTiles>,
     pipelines: Pipelines,
     common: wgpu::BindGroup,
-    tile_layout: wgpu::BindGroupLayout,
-    table: wgpu::Buffer,
-    /// For meshes, which have no tile.
-    no_tile: wgpu::BindGroup,
+    stands_layout: wgpu::BindGroupLayout,
+    /// For meshes, which read no list.
+    no_stands: wgpu::BindGroup,
     quads: wgpu::Buffer,
     model_vertices: wgpu::Buffer,
     model_indices: wgpu::Buffer,
@@ -199,22 +133,20 @@ impl Plants {
             let tier = Tier { reach_m: tier.reach_m.min(near_m.max(500.0)), ..tier };
             let nursery = nursery.clone();
             let settings = Settings { side_m: tier.side_m, reach_m: tier.reach_m, budget_bytes: BUDGET_BYTES, wait };
-            let tiles = NearTiles::new(&grid, settings, bytes, move |tile| grow(&nursery, &tier, tile, share));
+            let tiles = NearTiles::new(&grid, settings, bytes, move |tile| nursery.plants(&tier, tile, share));
             TierTiles { tier, tiles, shown: HashMap::new() }
         });
         let (vertices, indices, models) = models();
-        let quads: Vec<u16> = (0..MOST_PLANTS as u16).flat_map(|p| [0, 1, 2, 2, 1, 3].map(|i| 4 * p + i)).collect();
+        let quads: Vec<u16> = (0..CARDS_A_DRAW as u16).flat_map(|p| [0, 1, 2, 2, 1, 3].map(|i| 4 * p + i)).collect();
         let common_layout = layout(device, "plants", &COMMON);
-        let tile_layout = layout(device, "plants tile", &TILE);
-        let table = buffer(device, "plants tiles", MOST_TILES as u64 * ENTRY, wgpu::BufferUsages::UNIFORM);
-        let nothing = buffer(device, "no plants", 12, wgpu::BufferUsages::STORAGE);
+        let stands_layout = layout(device, "plants in sight", &STANDS);
+        let nothing = buffer(device, "no plants", size_of::<Stand>() as u64, wgpu::BufferUsages::STORAGE);
         Some(Self {
-            no_tile: tile_group(device, &tile_layout, &table, &nothing),
-            pipelines: pipelines(device, &[frame, terrain, &common_layout, &tile_layout], format),
+            no_stands: stands_group(device, &stands_layout, &nothing),
+            pipelines: pipelines(device, &[frame, terrain, &common_layout, &stands_layout], format),
             common: common(gpu, &common_layout),
             tiers: tiers.into(),
-            tile_layout,
-            table,
+            stands_layout,
             quads: filled(gpu, "plants cards", bytemuck::cast_slice(&quads), wgpu::BufferUsages::INDEX),
             model_vertices: filled(gpu, "plants models", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
             model_indices: filled(gpu, "plants models", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX),
@@ -225,19 +157,15 @@ impl Plants {
     }
 
     /// Lets the tiles follow the eye.
-    pub fn follow(&mut self, gpu: &Gpu, eye_m: DVec3, speed_mps: f64) {
+    pub fn follow(&mut self, eye_m: DVec3, speed_mps: f64) {
         for tier in &mut self.tiers {
             for change in tier.tiles.update(DVec2::new(eye_m.x, eye_m.z), speed_mps) {
                 match change {
-                    Change::Arrived(tile, grown) => {
-                        self.placed_ms_max = self.placed_ms_max.max(grown.planted.took_ms);
-                        if grown.words.is_empty() {
-                            continue;
+                    Change::Arrived(tile, planted) => {
+                        self.placed_ms_max = self.placed_ms_max.max(planted.took_ms);
+                        if !planted.plants.is_empty() {
+                            tier.shown.insert(tile, planted);
                         }
-                        let words = bytemuck::cast_slice(&grown.words);
-                        let plants = filled(gpu, "plants", words, wgpu::BufferUsages::STORAGE);
-                        let group = tile_group(&gpu.device, &self.tile_layout, &self.table, &plants);
-                        tier.shown.insert(tile, Shown { grown, group });
                     }
                     Change::Left(tile) => {
                         tier.shown.remove(&tile);
@@ -250,61 +178,38 @@ impl Plants {
     /// Culls for a view. All views of a frame share one eye.
     pub fn prepare(&mut self, gpu: &Gpu, view_index: usize, view: &View) {
         let frustum = view.frustum();
-        let mut draws = Vec::new();
-        let mut near: [Vec<Near>; SHAPES] = Default::default();
-        let mut table = vec![0u8; 0];
+        let eye = DVec2::new(view.eye_m.x, view.eye_m.z);
+        let mut parts = Vec::new();
         for tier in &self.tiers {
-            let mut tiles: Vec<(&TileIndex, &Shown)> = tier.shown.iter().collect();
+            let mut tiles: Vec<(&TileIndex, &Arc<Planted>)> = tier.shown.iter().collect();
             tiles.sort_by_key(|(tile, _)| **tile);
-            for (tile, shown) in tiles {
-                let entry = table.len() / ENTRY as usize;
-                let corner = tier.tiles.corner_m(*tile);
-                let origin_m = DVec2::new(corner.x - view.eye_m.x, corner.y - view.eye_m.z);
-                if tier.tiles.distance_m(DVec2::new(view.eye_m.x, view.eye_m.z), *tile) > tier.tier.reach_m
-                    || entry >= MOST_TILES
-                {
-                    continue;
+            for (tile, planted) in tiles {
+                if tier.tiles.distance_m(eye, *tile) <= tier.tier.reach_m {
+                    let origin_m = tier.tiles.corner_m(*tile) - eye;
+                    plants_seen::parts(&tier.tier, planted, origin_m, view.eye_m.y, &frustum, &mut parts);
                 }
-                // Views of one eye see the same tiles, each a part of them: every tile has its entry in each view.
-                let bytes = TileEntry {
-                    origin_m: origin_m.as_vec2().to_array(),
-                    part_m: (tier.tier.side_m / PARTS) as f32,
-                    reach_m: tier.tier.reach_m as f32,
-                    full: tier.tier.full,
-                    mesh_m: MESH_M as f32,
-                    far_m: FAR_M as f32,
-                    pad: 0.0,
-                };
-                table.extend_from_slice(bytemuck::bytes_of(&bytes));
-                table.resize((entry + 1) * ENTRY as usize, 0);
-                pick(&tier.tier, shown, origin_m, view.eye_m.y, &frustum, entry as u32, &mut draws, &mut near);
             }
         }
-        if table.is_empty() {
-            // Meshes need the reach of meshes, and there are none.
-            table.resize(ENTRY as usize, 0);
-        }
-        gpu.queue.write_buffer(&self.table, 0, &table);
-        draws.sort_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+        let seen = Seen::of(parts, view, &frustum);
         if self.views.len() <= view_index {
             self.views.resize_with(view_index + 1, ViewDraws::default);
         }
         let prepared = &mut self.views[view_index];
-        prepared.draws = draws;
-        prepared.gather(gpu, &near, &self.models);
+        prepared.upload(gpu, &self.stands_layout, &seen);
+        prepared.gather(gpu, &seen.near, &self.models);
     }
 
     /// Draws a prepared view's plants; groups 0 and 1 (the ground's, given here) are bound.
     pub fn draw(&self, view_index: usize, terrain: &wgpu::BindGroup, pass: &mut wgpu::RenderPass<'_>) {
         let Some(view) = self.views.get(view_index) else { return };
-        if view.draws.is_empty() {
+        if view.counts.draw_calls == 0 {
             return;
         }
         pass.set_bind_group(1, terrain, &[]);
         pass.set_bind_group(2, &self.common, &[]);
+        pass.set_bind_group(3, view.stands.as_ref().map_or(&self.no_stands, |(_, group)| group), &[]);
         if let Some(near) = view.near.as_ref().filter(|_| view.counts.meshes > 0) {
             pass.set_pipeline(&self.pipelines.leaf);
-            pass.set_bind_group(3, &self.no_tile, &[0]);
             pass.set_vertex_buffer(0, self.model_vertices.slice(..));
             pass.set_vertex_buffer(1, near.slice(..));
             pass.set_index_buffer(self.model_indices.slice(..), wgpu::IndexFormat::Uint16);
@@ -314,18 +219,17 @@ impl Plants {
                 }
             }
         }
-        pass.set_index_buffer(self.quads.slice(..), wgpu::IndexFormat::Uint16);
-        for far in [false, true] {
-            pass.set_pipeline(if far { &self.pipelines.far } else { &self.pipelines.card });
-            for draw in view.draws.iter().filter(|draw| draw.far == far) {
-                pass.set_bind_group(3, &draw.group, &[draw.entry * ENTRY as u32]);
-                let Range { start, end } = draw.plants;
-                if far {
-                    pass.draw(3 * start..3 * end, 0..1);
-                } else {
-                    pass.draw_indexed(6 * start..6 * end, 0, 0..1);
-                }
+        if !view.cards.is_empty() {
+            pass.set_pipeline(&self.pipelines.card);
+            pass.set_index_buffer(self.quads.slice(..), wgpu::IndexFormat::Uint16);
+            for first in view.cards.clone().step_by(CARDS_A_DRAW) {
+                let count = (view.cards.end - first).min(CARDS_A_DRAW as u32);
+                pass.draw_indexed(0..6 * count, 4 * first as i32, 0..1);
             }
+        }
+        if !view.far.is_empty() {
+            pass.set_pipeline(&self.pipelines.far);
+            pass.draw(3 * view.far.start..3 * view.far.end, 0..1);
         }
     }
 
@@ -334,11 +238,9 @@ impl Plants {
         let mut counts = self.views.first().map_or_else(PlantCounts::default, |view| view.counts);
         let frustum = view.frustum();
         for tier in &self.tiers {
-            for (tile, shown) in &tier.shown {
+            for (tile, planted) in &tier.shown {
                 let corner = tier.tiles.corner_m(*tile);
-                counts.drawn += shown
-                    .grown
-                    .planted
+                counts.drawn += planted
                     .plants
                     .iter()
                     .filter(|plant| {
@@ -365,100 +267,43 @@ impl Plants {
     }
 }
 
-/// Most plants of a tile: those of the middle tier.
-const MOST_PLANTS: usize = 10_000;
+/// Cards of a draw call: four corners of each have 16-bit numbers.
+const CARDS_A_DRAW: usize = 16_000;
+/// Cards and triangles in a view at most.
+const MOST_STANDS: usize = 1_000_000;
 
-fn grow(nursery: &Nursery, tier: &Tier, tile: TileIndex, share: f32) -> Grown {
-    let planted = nursery.plants(tier, tile, share);
-    let words = planted.plants.iter().map(|plant| {
-        let looks = u32::from_le_bytes([plant.species, plant.size, plant.turn, plant.tint]);
-        [u32::from(plant.at[0]) | u32::from(plant.at[1]) << 16, plant.height_m.to_bits(), looks]
-    });
-    let words = words.collect();
-    Grown { planted, words }
-}
-
-fn bytes(grown: &Grown) -> usize {
-    size_of_val(grown.words.as_slice())
-}
-
-/// Up to where a plant of a height is a mesh; the shader's `mesh_reach`.
-fn mesh_reach_m(tall_m: f32) -> f32 {
-    MESH_M as f32 * (tall_m / TALL_M).clamp(0.2, 1.0)
-}
-
-/// The parts of a tile that a view sees, and its plants near the eye.
-fn pick(
-    tier: &Tier,
-    shown: &Shown,
-    origin_m: DVec2,
-    eye_height_m: f64,
-    frustum: &Frustum,
-    entry: u32,
-    draws: &mut Vec<Draw>,
-    near: &mut [Vec<Near>; SHAPES],
-) {
-    let planted = &shown.grown.planted;
-    let side_m = tier.side_m / f64::from(SQUARES);
-    let mut start = 0;
-    for (number, square) in (0..).zip(&planted.squares) {
-        let plants = start..square.end;
-        start = square.end;
-        if plants.is_empty() {
-            continue;
-        }
-        let [least_m, most_m] = square.feet_m;
-        let west = origin_m.x + f64::from(number % SQUARES) * side_m;
-        let north = origin_m.y + f64::from(number / SQUARES) * side_m;
-        let low = DVec3::new(west, f64::from(least_m) - eye_height_m, north).as_vec3();
-        let high = DVec3::new(west + side_m, f64::from(most_m + MOST_TALL_M) - eye_height_m, north + side_m).as_vec3();
-        let margin = Vec3::new(15.0, 1.0, 15.0);
-        if !frustum.may_see_box(low - margin, high + margin) {
-            continue;
-        }
-        let nearest_m = Vec3::ZERO.clamp(low, high).length();
-        let farthest_m = low.abs().max(high.abs()).length();
-        if f64::from(nearest_m) > tier.reach_m {
-            continue;
-        }
-        let conifers = plants.start..square.conifers_end;
-        for (kind, far_m) in [(conifers, CONIFER_FAR_M), (square.conifers_end..square.end, FAR_M)] {
-            // What is gone by now stands at the list's end.
-            let standing = &planted.plants[kind.start as usize..kind.end as usize];
-            let count = standing.partition_point(|plant| plant.reach_m(tier) >= nearest_m) as u32;
-            for far in [false, true] {
-                let wanted =
-                    if far { f64::from(farthest_m) > far_m * FAR_SPREAD } else { f64::from(nearest_m) < far_m };
-                if count > 0 && wanted {
-                    let plants = kind.start..kind.start + count;
-                    draws.push(Draw { distance_m: nearest_m, far, group: shown.group.clone(), entry, plants });
-                }
-            }
-        }
-        if f64::from(nearest_m) >= MESH_M {
-            continue;
-        }
-        for plant in &planted.plants[plants.start as usize..plants.end as usize] {
-            let plan_m = plant.plan_m(tier, origin_m);
-            let foot_m = DVec3::new(plan_m.x, f64::from(plant.height_m) - eye_height_m, plan_m.y).as_vec3();
-            let tall_m = plant.tall_m();
-            let around = Vec3::new(0.5, 0.0, 0.5) * tall_m.max(3.0);
-            if foot_m.length() < mesh_reach_m(tall_m)
-                && frustum.may_see_box(foot_m - around, foot_m + around + Vec3::Y * tall_m)
-            {
-                let shape = SPECIES[usize::from(plant.species) % SPECIES.len()].shape as usize;
-                let looks = u32::from_le_bytes([plant.species, plant.size, plant.turn, plant.tint]);
-                near[shape].push(Near { foot_m: foot_m.to_array(), looks });
-            }
-        }
-    }
+fn bytes(planted: &Planted) -> usize {
+    size_of_val(planted.plants.as_slice())
 }
 
 impl ViewDraws {
+    /// Uploads cards and triangles.
+    fn upload(&mut self, gpu: &Gpu, layout: &wgpu::BindGroupLayout, seen: &Seen) {
+        let cards = &seen.cards[..seen.cards.len().min(MOST_STANDS)];
+        let far = &seen.far[..seen.far.len().min(MOST_STANDS - cards.len())];
+        self.cards = 0..cards.len() as u32;
+        self.far = self.cards.end..self.cards.end + far.len() as u32;
+        let [cards, far]: [&[u8]; 2] = [bytemuck::cast_slice(cards), bytemuck::cast_slice(far)];
+        let size = (cards.len() + far.len()) as u64;
+        if size == 0 {
+            return;
+        }
+        if self.stands.as_ref().is_none_or(|(buffer, _)| buffer.size() < size) {
+            let buffer = buffer(&gpu.device, "plants in sight", size.next_power_of_two(), wgpu::BufferUsages::STORAGE);
+            let group = stands_group(&gpu.device, layout, &buffer);
+            self.stands = Some((buffer, group));
+        }
+        if let Some((buffer, _)) = &self.stands {
+            gpu.queue.write_buffer(buffer, 0, cards);
+            gpu.queue.write_buffer(buffer, cards.len() as u64, far);
+        }
+    }
+
     /// Uploads the meshes and counts.
     fn gather(&mut self, gpu: &Gpu, near: &[Vec<Near>; SHAPES], models: &[Place]) {
         let mut all: Vec<Near> = Vec::new();
-        self.counts = PlantCounts { draw_calls: self.draws.len(), ..PlantCounts::default() };
+        let draw_calls = self.cards.len().div_ceil(CARDS_A_DRAW) + usize::from(!self.far.is_empty());
+        self.counts = PlantCounts { draw_calls, ..PlantCounts::default() };
         for ((meshes, near), (indices, _)) in self.meshes.iter_mut().zip(near).zip(models) {
             let first = all.len() as u32;
             // Nearest first: what is behind is not shaded.
@@ -470,7 +315,7 @@ impl ViewDraws {
             self.counts.triangles += meshes.len() * indices.len() / 3;
         }
         self.counts.meshes = all.len();
-        self.counts.triangles += self.draws.iter().map(|d| d.plants.len() * if d.far { 1 } else { 2 }).sum::<usize>();
+        self.counts.triangles += 2 * self.cards.len() + self.far.len();
         if all.is_empty() {
             return;
         }
@@ -520,17 +365,14 @@ const COMMON: [(wgpu::ShaderStages, wgpu::BindingType); 3] = [
     (wgpu::ShaderStages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
 ];
 
-const TILE: [(wgpu::ShaderStages, wgpu::BindingType); 2] = [
-    (wgpu::ShaderStages::VERTEX, uniform(true)),
-    (
-        wgpu::ShaderStages::VERTEX,
-        wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only: true },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-    ),
-];
+const STANDS: [(wgpu::ShaderStages, wgpu::BindingType); 1] = [(
+    wgpu::ShaderStages::VERTEX,
+    wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only: true },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    },
+)];
 
 /// A uniform buffer's binding.
 pub(super) const fn uniform(has_dynamic_offset: bool) -> wgpu::BindingType {
@@ -555,24 +397,11 @@ pub(super) fn layout(
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
-fn tile_group(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    table: &wgpu::Buffer,
-    plants: &wgpu::Buffer,
-) -> wgpu::BindGroup {
-    let entry = wgpu::BufferBinding {
-        buffer: table,
-        offset: 0,
-        size: std::num::NonZeroU64::new(size_of::<TileEntry>() as u64),
-    };
+fn stands_group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, stands: &wgpu::Buffer) -> wgpu::BindGroup {
     device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("plants tile"),
+        label: Some("plants in sight"),
         layout,
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(entry) },
-            wgpu::BindGroupEntry { binding: 1, resource: plants.as_entire_binding() },
-        ],
+        entries: &[wgpu::BindGroupEntry { binding: 0, resource: stands.as_entire_binding() }],
     })
 }
 
@@ -682,7 +511,7 @@ fn pipelines(device: &wgpu::Device, groups: &[&wgpu::BindGroupLayout; 4], format
         bind_group_layouts: &groups.map(Some),
         immediate_size: 0,
     });
-    let constants = [("TILE", f64::from(terrain::block::mesh::TILE))];
+    let constants = [("TILE", f64::from(terrain::block::mesh::TILE)), ("MESH_M", MESH_M)];
     let options =
         wgpu::PipelineCompilationOptions { constants: &constants, ..wgpu::PipelineCompilationOptions::default() };
     let make = |vertex, fragment, buffers: &[Option<wgpu::VertexBufferLayout<'_>>]| {
