@@ -150,7 +150,7 @@ fn hostile_features_neither_panic_nor_paint_all() {
     let features = Features { areas: vec![area], ..Features::default() };
     assert_eq!(
         bake_cover(&field, &Lakes::default(), &features, &climate).cells().len(),
-        (4 * crate::CELLS as usize).pow(2)
+        (4 * CELLS as usize).pow(2)
     );
 }
 
@@ -161,7 +161,7 @@ fn cells_are_fine_in_small_worlds_and_few_in_large_ones() {
         let per_step = cells_per_step(&grid);
         (grid.step_m / f64::from(per_step), u64::from((grid.columns() - 1) * per_step).pow(2))
     };
-    assert_eq!(cells(200.0, 4), (50.0, u64::from(4 * 4 * crate::CELLS).pow(2)));
+    assert_eq!(cells(200.0, 4), (50.0, u64::from(4 * 4 * CELLS).pow(2)));
     assert_eq!(cells(25.0, 4).0, 25.0);
     let (cell_m, number) = cells(200.0, 67);
     assert!(cell_m == 100.0 && number <= MAX_CELLS, "{number}");
