@@ -148,10 +148,7 @@ fn hostile_features_neither_panic_nor_paint_all() {
     let ring = vec![far(1e300), far(-1e300), DVec2::new(1e300, 1e300)];
     let area = LandArea { cover: CoverClass::Snow, rings: vec![ring, vec![], vec![DVec2::ZERO; 3]] };
     let features = Features { areas: vec![area], ..Features::default() };
-    assert_eq!(
-        bake_cover(&field, &Lakes::default(), &features, &climate).cells().len(),
-        (4 * CELLS as usize).pow(2)
-    );
+    assert_eq!(bake_cover(&field, &Lakes::default(), &features, &climate).cells().len(), (4 * CELLS as usize).pow(2));
 }
 
 #[test]
