@@ -38,8 +38,6 @@ pub struct Things {
     own_models: Vec<(Model, Mesh)>,
     particles: Particles,
     lights: Option<Lights>,
-    /// The view last followed.
-    view: Option<View>,
 }
 
 impl Things {
@@ -78,7 +76,7 @@ impl Things {
         });
         let overlay = overlay.flatten();
         let lights = lights.flatten();
-        Self { overlay, plants, canopy, objects, own_models: Vec::new(), particles, lights, view: None }
+        Self { overlay, plants, canopy, objects, own_models: Vec::new(), particles, lights }
     }
 
     /// Streams around the eye and culls for a view. The terrain must have followed already.
@@ -104,7 +102,6 @@ impl Things {
             lights.follow(gpu, eye_m, speed_mps, dark);
             lights.prepare(gpu, 0, view);
         }
-        self.view = Some(*view);
     }
 
     /// Places the particles of a view at a time of the scene, seconds.
@@ -140,10 +137,10 @@ impl Things {
         }
     }
 
-    /// What stands in the view last followed: single plants, and the closed forest. Looks at every plant.
+    /// What stands in the view last followed: single plants, and the closed forest.
     pub fn plants_drawn(&self) -> (PlantCounts, CanopyCounts) {
-        let counted = self.plants.as_ref().zip(self.view.as_ref()).map(|(plants, view)| plants.counts(view));
-        (counted.unwrap_or_default(), self.canopy.as_ref().map_or_else(CanopyCounts::default, CanopyPass::counts))
+        let plants = self.plants.as_ref().map_or_else(PlantCounts::default, Plants::counts);
+        (plants, self.canopy.as_ref().map_or_else(CanopyCounts::default, CanopyPass::counts))
     }
 
     /// What stood on the ground of the last picture.

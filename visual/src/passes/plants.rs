@@ -59,7 +59,7 @@ const NEAR_ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![3 =
 /// What a view's plants are made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PlantCounts {
-    /// Plants that stand in sight, by their feet: as many are drawn.
+    /// Plants that are sent to be drawn: in sight, within reach and not too small.
     pub drawn: usize,
     /// Of them as meshes.
     pub meshes: usize,
@@ -197,6 +197,7 @@ impl Plants {
         let prepared = &mut self.views[view_index];
         prepared.upload(gpu, &self.stands_layout, &seen);
         prepared.gather(gpu, &seen.near, &self.models);
+        prepared.counts.drawn = seen.plants;
     }
 
     /// Draws a prepared view's plants; groups 0 and 1 (the ground's, given here) are bound.
@@ -233,27 +234,9 @@ impl Plants {
         }
     }
 
-    /// What the first view's plants were made of; looks at every plant.
-    pub fn counts(&self, view: &View) -> PlantCounts {
-        let mut counts = self.views.first().map_or_else(PlantCounts::default, |view| view.counts);
-        let frustum = view.frustum();
-        for tier in &self.tiers {
-            for (tile, planted) in &tier.shown {
-                let corner = tier.tiles.corner_m(*tile);
-                counts.drawn += planted
-                    .plants
-                    .iter()
-                    .filter(|plant| {
-                        let plan = plant.plan_m(&tier.tier, corner);
-                        let foot = DVec3::new(plan.x, f64::from(plant.height_m), plan.y) - view.eye_m;
-                        let top = foot + DVec3::Y * f64::from(plant.tall_m());
-                        foot.length() < f64::from(plant.reach_m(&tier.tier))
-                            && frustum.may_see_box(foot.as_vec3(), top.as_vec3())
-                    })
-                    .count();
-            }
-        }
-        counts
+    /// What the first view's plants were made of.
+    pub fn counts(&self) -> PlantCounts {
+        self.views.first().map_or_else(PlantCounts::default, |view| view.counts)
     }
 
     /// Longest that a tile's plants took to place, milliseconds.

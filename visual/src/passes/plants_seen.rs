@@ -70,6 +70,8 @@ pub struct Seen {
     pub far: Vec<Stand>,
     /// Meshes of each shape.
     pub near: [Vec<Near>; SHAPES],
+    /// Plants in any of these lists; one that dissolves counts once.
+    pub plants: usize,
 }
 
 /// A part of a tile that may be in sight.
@@ -165,6 +167,7 @@ impl Seen {
         let mesh_m = mesh_reach_m(whole_m);
         if distance_m < mesh_m {
             self.near[species.shape as usize].push(Near { foot_m: foot_m.to_array(), looks });
+            self.plants += 1;
             if distance_m <= 0.85 * mesh_m {
                 return;
             }
@@ -177,6 +180,7 @@ impl Seen {
         if share * pixels < LEAST_PX {
             return;
         }
+        self.plants += usize::from(distance_m >= mesh_m);
         let stand = Stand { foot_m: foot_m.to_array(), tall_m: whole_m * share, looks };
         let early = if matches!(species.shape, Shape::Spire | Shape::Conifer) { CONIFER_FAR } else { 1.0 };
         let far_m = FAR_M * early * (FAR_SPREAD + (1.0 - FAR_SPREAD) * f32::from(plant.turn) / 255.0);
