@@ -3,6 +3,7 @@
 //! How a value is read and what it may be stands in [`crate::values`]. A flag that is not given is `None` where the
 //! quality preset or the world decides. Misuse is told by clap and ends with exit status 2.
 
+use crate::stage::cameras::Camera;
 use crate::values::{self, Extent, Look, MapPoint, Overlay, Place, Priced, Quality, Size, Subject, Without};
 use clap::{Args, Parser, Subcommand};
 use sim::UtcTime;
@@ -126,6 +127,9 @@ pub struct FlyArgs {
     /// How fast, metres a second.
     #[arg(long, value_name = "V", value_parser = values::speed_mps, allow_hyphen_values = true)]
     pub speed_mps: Option<f64>,
+    /// Where the flight is seen from.
+    #[arg(long, value_name = "C", value_enum, default_value = "cockpit")]
+    pub camera: Camera,
     /// How the picture is made.
     #[command(flatten)]
     pub view: ViewArgs,

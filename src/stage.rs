@@ -3,13 +3,17 @@
 //! The one file that knows both the simulation and the picture. The eye is the aircraft's reference point to the bit, in
 //! f64; the attitude given here turns view axes (x right, y up, z backward) into the world's.
 
+pub mod actors;
+pub mod cameras;
 pub mod effects;
 
-use crate::hud::{self, Anchor, HudInput};
-use crate::scenery::{self, Heavens};
+use crate::hud::{self, Anchor, HudInput, Instruments};
+use crate::scenery::{self, Heavens, Scenery};
+use actors::Cast;
+use cameras::{Camera, Cameras};
 use glam::{DQuat, DVec3, Vec2};
 use sim::input::Head;
-use sim::{HeightAt, Snapshot, UtcTime};
+use sim::{HeightAt, Scene, Snapshot, UtcTime};
 use std::sync::Arc;
 use terrain::Area;
 use terrain::store::World;
@@ -82,8 +86,54 @@ impl Sun {
     }
 }
 
+/// Who sees the flight: the head, the cameras, and what shapes the scene's entities have.
+#[derive(Debug)]
+pub struct Seat {
+    /// The pilot's head.
+    pub head: Head,
+    /// From where it is seen.
+    pub cameras: Cameras,
+    cast: Cast,
+}
+
+impl Seat {
+    /// For a scene over a world, beginning with a camera.
+    pub fn new(world: &World, scene: &Scene, camera: Camera) -> Self {
+        let cameras = Cameras::new(&world.features, camera);
+        Self { head: Head::default(), cameras, cast: Cast::of(scene.catalogue()) }
+    }
+
+    /// The view of a snapshot, and whether it is from inside; what moves stands in the scenery from then on.
+    pub fn view(&mut self, scenery: &mut Scenery, snapshot: &Snapshot, size_px: [u32; 2]) -> Seen {
+        let eye = self.cameras.eye(snapshot, &self.head, &scenery.area);
+        scenery.things.set_moving(&self.cast.shapes(snapshot, eye.inside));
+        let view = scenery.view(eye.at_m, eye.attitude, size_px);
+        Seen { view, ahead: eye.inside && self.head.is_ahead(), camera: self.cameras.now() }
+    }
+}
+
+/// What is seen of a snapshot.
+#[derive(Debug, Clone)]
+pub struct Seen {
+    /// The view.
+    pub view: View,
+    /// Whether it looks along the nose: what lies on the world may be drawn over it.
+    pub ahead: bool,
+    /// Through which camera.
+    pub camera: Camera,
+}
+
+/// The display's brightness by the sun's height: 1 by day, dim at night.
+fn brightness(heavens: &Heavens) -> f64 {
+    const NIGHT: f64 = 0.35;
+    // From sunset to the end of nautical twilight, 12 degrees.
+    let night = (-heavens.to_sun.y / 12f64.to_radians().sin()).clamp(0.0, 1.0);
+    1.0 + (NIGHT - 1.0) * night
+}
+
 /// The head-up display over a view.
-pub fn hud(world: &World, snapshot: &Snapshot, view: &View, head: &Head, captions: Captions<'_>) -> Vec<Stroke> {
+pub fn hud(world: &World, snapshot: &Snapshot, seen: &Seen, heavens: &Heavens, captions: Captions<'_>) -> Vec<Stroke> {
+    let view = &seen.view;
     let aircraft = &snapshot.aircraft;
     let angles = aircraft.angles();
     let date = snapshot.date.to_string();
@@ -91,6 +141,9 @@ pub fn hud(world: &World, snapshot: &Snapshot, view: &View, head: &Head, caption
     let mut status = snapshot.flags.names();
     if snapshot.rate != 1.0 {
         status.push(&rate);
+    }
+    if seen.camera != Camera::Cockpit {
+        status.push(seen.camera.name());
     }
     status.extend_from_slice(captions.status);
     let input = HudInput {
@@ -110,7 +163,10 @@ pub fn hud(world: &World, snapshot: &Snapshot, view: &View, head: &Head, caption
         hint: captions.hint,
         viewport_px: (view.size_px[0], view.size_px[1]),
         fov_y_rad: (view.top.atan() - view.bottom.atan()),
-        looking_ahead: head.is_ahead(),
+        instruments: Instruments::default(),
+        weapons: None,
+        brightness: brightness(heavens),
+        looking_ahead: seen.ahead,
     };
     let (lines, texts) = hud::hud(&input);
     let mut strokes: Vec<Stroke> = lines
@@ -144,8 +200,7 @@ mod tests {
 
     #[test]
     fn the_head_turns_the_view_about_the_pilots_axes() {
-        let scene =
-            sim::Scene::new(AircraftState::level(DVec3::new(0.0, 3e3, 0.0), 0.0, 200.0), UtcTime { unix_ns: 0 });
+        let scene = Scene::new(AircraftState::level(DVec3::new(0.0, 3e3, 0.0), 0.0, 200.0), UtcTime { unix_ns: 0 });
         let snapshot = scene.snapshot();
         let looks = |right_rad, up_rad| {
             let mut head = Head::default();

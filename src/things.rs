@@ -18,7 +18,7 @@ use visual::models::things::Model;
 use visual::particles::Emitter;
 use visual::passes::canopy::{CanopyCounts, CanopyPass};
 use visual::passes::lights::{Dark, Lights, Reach};
-use visual::passes::objects::{ObjectCounts, Objects};
+use visual::passes::objects::{ObjectCounts, ObjectInstance, Objects};
 use visual::passes::overlay::{OverlayPass, OverlaySettings};
 use visual::passes::particles::Particles;
 use visual::passes::plants::{PlantCounts, Plants};
@@ -64,7 +64,10 @@ impl Things {
             nursery.as_ref().and_then(|n| Plants::new(gpu, frame, ground, format, n, share, near_m, look.wait));
         let canopy = nursery.as_ref().and_then(|n| CanopyPass::new(gpu, frame, ground, format, n, near_m, look.wait));
         let grid = landscape.ground.field().grid();
-        let objects = (look.content.objects && !standing.is_empty())
+        // Also where nothing stands: what a scene moves is drawn by the same pass, and an empty one does no work.
+        let objects = look
+            .content
+            .objects
             .then(|| Objects::new(gpu, frame, ground, format, grid, standing.clone(), near_m, look.wait));
         let particles = Particles::new(frame, format);
         let lights = look.content.lights.then(|| {
@@ -146,6 +149,13 @@ impl Things {
     /// What stood on the ground of the last picture.
     pub fn object_counts(&self) -> ObjectCounts {
         self.objects.as_ref().map_or_else(ObjectCounts::default, Objects::counts)
+    }
+
+    /// What a scene moves, for the next pictures.
+    pub fn set_moving(&mut self, shapes: &[ObjectInstance]) {
+        if let Some(objects) = &mut self.objects {
+            objects.set_dynamic(shapes);
+        }
     }
 
     /// What tracers, smoke and fire the next pictures show.

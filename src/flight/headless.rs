@@ -9,9 +9,8 @@ use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::report::Fly;
 use crate::scenery::{self, Look, Scenery};
-use crate::stage::{self, Captions, Sun};
+use crate::stage::{self, Captions, Seat, Sun};
 use sim::clock::DEFAULT_STEP_HZ;
-use sim::input::Head;
 use std::sync::Arc;
 use std::time::Instant;
 use terrain::store::World;
@@ -36,8 +35,8 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
     let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
     let ground = scenery.scene_ground();
     let mut scene = plan.scene(date);
+    let mut seat = Seat::new(&world, &scene, args.camera);
     let mut sun = Sun::new(&world, date)?;
-    let head = Head::default();
     let frames = match length {
         Length::Frames(frames) => frames,
         Length::Seconds(seconds_s) => (seconds_s * LOCKSTEP_HZ).round().max(1.0) as u64,
@@ -56,14 +55,15 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
             sim_hash.add(snapshot.hash());
         }
         steps = snapshot.step;
-        let view = scenery.view(stage::eye_m(&snapshot), stage::attitude(&snapshot, &head), look.size_px);
+        let seen = seat.view(&mut scenery, &snapshot, look.size_px);
+        let view = &seen.view;
         let heavens = sun.at(&world, snapshot.date);
-        record.follow(&mut scenery, &view, &snapshot, heavens);
+        record.follow(&mut scenery, view, &snapshot, heavens);
         let captions = Captions { frame_ms: f64::NAN, ..Captions::default() };
-        let hud = stage::hud(&world, &snapshot, &view, &head, captions);
-        scenery.draw(&view, heavens, snapshot.time_s, hud, &target.view).map_err(device_failed)?;
+        let hud = stage::hud(&world, &snapshot, &seen, &heavens, captions);
+        scenery.draw(view, heavens, snapshot.time_s, hud, &target.view).map_err(device_failed)?;
         scenery.gpu.wait().map_err(device_failed)?;
-        record.frame(&scenery, &view, &snapshot, None);
+        record.frame(&scenery, view, &snapshot, None);
         bar.show((frame + 1) as f64 / frames as f64);
     }
     drop(bar);
@@ -75,7 +75,7 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
         sim_hash: sim_hash.shown(),
     };
     let mut report = record.report(&scenery, &ending);
-    let mut taken = pictures::take(scenery, &plan, date, &args.shots)?;
+    let mut taken = pictures::take(scenery, &plan, date, args.camera, &args.shots)?;
     taken.hash.add(last.hash());
     report.image_hash = Some(taken.hash.shown());
     report.shots = taken.files.iter().map(|file| file.display().to_string()).collect();

@@ -15,9 +15,8 @@ use crate::output;
 use crate::progress::Progress;
 use crate::report::{self, Fly};
 use crate::scenery::{self, Look, Scenery};
-use crate::stage::{self, Captions, Sun};
+use crate::stage::{self, Captions, Seat, Sun};
 use sim::SimThread;
-use sim::input::Head;
 use sim::run::Message;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -45,13 +44,13 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
     let ground = scenery.scene_ground();
     let mut scene = plan.scene(date);
+    let mut seat = Seat::new(&world, &scene, args.camera);
     sim::lockstep(&mut scene, &ground, 1);
     // Held until the first picture, which takes as long as filling the window does.
     scene.clock.set_paused(true);
     let sim =
         SimThread::start(scene, ground).map_err(|error| Failure::while_doing("starting the simulation", error))?;
     let mut sun = Sun::new(&world, date)?;
-    let head = Head::default();
     let period = Duration::from_secs_f64(1.0 / hz);
 
     let mut record = Record::new(started, false);
@@ -61,17 +60,18 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     loop {
         let frame_start = Instant::now();
         let snapshot = sim.now();
-        let view = scenery.view(stage::eye_m(&snapshot), stage::attitude(&snapshot, &head), look.size_px);
+        let seen = seat.view(&mut scenery, &snapshot, look.size_px);
+        let view = &seen.view;
         let heavens = sun.at(&world, snapshot.date);
-        record.follow(&mut scenery, &view, &snapshot, heavens);
-        let hud = stage::hud(&world, &snapshot, &view, &head, Captions { frame_ms, ..Captions::default() });
-        scenery.draw(&view, heavens, snapshot.time_s, hud, &target.view).map_err(device_failed)?;
+        record.follow(&mut scenery, view, &snapshot, heavens);
+        let hud = stage::hud(&world, &snapshot, &seen, &heavens, Captions { frame_ms, ..Captions::default() });
+        scenery.draw(view, heavens, snapshot.time_s, hud, &target.view).map_err(device_failed)?;
         scenery.gpu.wait().map_err(device_failed)?;
         let took = frame_start.elapsed();
         frame_ms = took.as_secs_f64() * 1e3;
-        record.frame(&scenery, &view, &snapshot, Some(took));
+        record.frame(&scenery, view, &snapshot, Some(took));
         if record.frames() % SEARCHED == 1
-            && let Some(found) = holes::count(&scenery, &view)?
+            && let Some(found) = holes::count(&scenery, view)?
         {
             record.add_holes(found);
         }
@@ -105,7 +105,7 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     }
     let ending = Ending { mode: "paced", flown_s, steps: last.step, sim_hash: report::hash(last.hash()) };
     let mut report = record.report(&scenery, &ending);
-    let taken = pictures::take(scenery, &plan, date, &args.shots)?;
+    let taken = pictures::take(scenery, &plan, date, args.camera, &args.shots)?;
     report.image_hash = Some(taken.hash.shown());
     report.shots = taken.files.iter().map(|file| file.display().to_string()).collect();
     Ok(report)

@@ -9,8 +9,8 @@ use super::record::RunningHash;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::scenery::{Look, Scenery};
-use crate::stage::{self, Captions, Sun};
-use sim::input::Head;
+use crate::stage::cameras::Camera;
+use crate::stage::{self, Captions, Seat, Sun};
 use std::path::{Path, PathBuf};
 use visual::capture::{self, Offscreen, Picture};
 
@@ -34,7 +34,7 @@ pub struct Taken {
 ///
 /// # Errors
 /// [`Failure::Failed`] if the device fails or a file cannot be written.
-pub fn take(flown: Scenery, plan: &Plan, date: sim::UtcTime, folder: &Path) -> Result<Taken, Failure> {
+pub fn take(flown: Scenery, plan: &Plan, date: sim::UtcTime, camera: Camera, folder: &Path) -> Result<Taken, Failure> {
     let bar = Progress::new("taking pictures");
     let own_models = flown.things.own_models().to_vec();
     let Scenery { gpu, world, look, .. } = flown;
@@ -46,7 +46,7 @@ pub fn take(flown: Scenery, plan: &Plan, date: sim::UtcTime, folder: &Path) -> R
     let ground = scenery.scene_ground();
     let mut scene = plan.scene(date);
     let heavens = Sun::new(&world, date)?.at(&world, date);
-    let head = Head::default();
+    let mut seat = Seat::new(&world, &scene, camera);
     let shrink = (COLUMNS * size_px[0]).div_ceil(SHEET_PX).max(1);
     let mut taken = Taken::default();
     let mut small = Vec::new();
@@ -55,16 +55,17 @@ pub fn take(flown: Scenery, plan: &Plan, date: sim::UtcTime, folder: &Path) -> R
         scene.seek_track(place.distance_m);
         // A step keeps a track that runs under the ground above it.
         let snapshot = sim::lockstep(&mut scene, &ground, 1);
-        let view = scenery.view(stage::eye_m(&snapshot), stage::attitude(&snapshot, &head), size_px);
+        let seen = seat.view(&mut scenery, &snapshot, size_px);
+        let view = &seen.view;
         for _ in 0..MOST_UPDATES {
-            scenery.follow(&view, 0.0, heavens);
+            scenery.follow(view, 0.0, heavens);
             if !scenery.terrain.window().is_jumping() && scenery.terrain.window().late_blocks() == 0 {
                 break;
             }
         }
         let captions = Captions { frame_ms: f64::NAN, ..Captions::default() };
-        let hud = stage::hud(&world, &snapshot, &view, &head, captions);
-        scenery.draw(&view, heavens, snapshot.time_s, hud, &target.view).map_err(device_failed)?;
+        let hud = stage::hud(&world, &snapshot, &seen, &heavens, captions);
+        scenery.draw(view, heavens, snapshot.time_s, hud, &target.view).map_err(device_failed)?;
         let picture = target.read(&scenery.gpu).map_err(device_failed)?;
         taken.hash.add(picture.hash());
         taken.files.push(write(&picture, folder, &file_name(number + 1, place))?);

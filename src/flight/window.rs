@@ -11,10 +11,11 @@ use crate::failure::Failure;
 use crate::output;
 use crate::report::{self, Fly};
 use crate::scenery::{self, Heavens, Look, Scenery};
-use crate::stage::{self, Captions, Sun};
+use crate::stage::cameras::Camera;
+use crate::stage::{self, Captions, Seat, Sun};
+use sim::input::Input;
 use sim::input::joystick::Joystick;
 use sim::input::keyboard::Keyboard;
-use sim::input::{Head, Input};
 use sim::run::Message;
 use sim::{Command, Controls, Mode, SimThread, Snapshot};
 use std::path::PathBuf;
@@ -39,7 +40,7 @@ const NO_EFFECT: Duration = Duration::from_secs(1);
 const SMOOTHING: f64 = 0.1;
 
 const HINT_TRACK: &str = "STICK OR ARROW KEYS: FLY YOURSELF   SPACE PAUSE   H DISPLAY   F12 PICTURE   ESC QUIT";
-const HINT_PILOT: &str = "PGUP PGDN THRUST   R RESET   T TRACK   Y SLEW   [ ] HOUR   , . MONTH   F2 F3 GROUND";
+const HINT_PILOT: &str = "PGUP PGDN THRUST   C CAMERA   R RESET   T TRACK   Y SLEW   [ ] HOUR   , . MONTH";
 const HINT_CRASHED: &str = "R RESET   Y SLEW";
 const HINT_SLEW: &str = "ARROWS MOVE AND TURN   PGUP PGDN CLIMB   Y FLY FROM HERE";
 
@@ -80,7 +81,6 @@ struct Cockpit<'a> {
     stage: Option<(Scenery, TextureFormat)>,
     flown: Option<Flown>,
     input: Input,
-    head: Head,
     hud_shown: bool,
     record: Record,
     last_frame: Option<Instant>,
@@ -105,6 +105,7 @@ struct Awaited {
 /// What begins with the first device.
 struct Flown {
     sim: SimThread,
+    seat: Seat,
     sun: Sun,
     /// When the first picture was there.
     begun: Option<Instant>,
@@ -124,7 +125,6 @@ impl<'a> Cockpit<'a> {
             stage: None,
             flown: None,
             input: Input::new(joystick, Controls::default().throttle),
-            head: Head::default(),
             hud_shown: true,
             record: Record::new(started, false),
             last_frame: None,
@@ -167,12 +167,14 @@ impl<'a> Cockpit<'a> {
             let date = self.args.view.time.unwrap_or_else(|| scenery::default_moment(&self.world));
             let ground = scenery.scene_ground();
             let mut scene = plan.scene(date);
+            let seat = Seat::new(&self.world, &scene, self.args.camera);
             sim::lockstep(&mut scene, &ground, 1);
             // Held until the first picture is there.
             scene.clock.set_paused(true);
             self.flown = Some(Flown {
                 sim: SimThread::start(scene, ground)
                     .map_err(|error| Failure::while_doing("starting the simulation", error))?,
+                seat,
                 sun: Sun::new(&self.world, date)?,
                 begun: None,
                 taken_over: None,
@@ -200,7 +202,9 @@ impl<'a> Cockpit<'a> {
             Event::Focused(false) => {
                 // Keys let go elsewhere are not told of.
                 self.input.keyboard.release_all();
-                self.head.command(Command::LookEnd);
+                if let Some(flown) = &mut self.flown {
+                    flown.seat.head.command(Command::LookEnd);
+                }
             }
             _ => {}
         }
@@ -208,7 +212,15 @@ impl<'a> Cockpit<'a> {
     }
 
     fn command(&mut self, command: Command) -> Flow {
-        self.head.command(command);
+        if let Some(flown) = &mut self.flown {
+            flown.seat.head.command(command);
+            let cameras = &mut flown.seat.cameras;
+            match command {
+                Command::NextCamera => cameras.set(cameras.now().next()),
+                Command::CockpitCamera => cameras.set(Camera::Cockpit),
+                _ => {}
+            }
+        }
         let ground = |cockpit: &mut Self, change: fn(&mut visual::passes::terrain::TerrainLook)| {
             if let Some((scenery, _)) = &mut cockpit.stage {
                 let mut look = scenery.look.ground;
@@ -247,7 +259,6 @@ impl<'a> Cockpit<'a> {
                 return Ok(Flow::Close);
             }
         }
-        self.head.update(wall_s);
         let (Some((scenery, format)), Some(flown)) = (&mut self.stage, &mut self.flown) else {
             return Ok(Flow::Continue);
         };
@@ -255,11 +266,13 @@ impl<'a> Cockpit<'a> {
             return Err(Failure::Failed("the simulation stopped by itself".to_owned()));
         }
         flown.hear(controls);
+        flown.seat.head.update(wall_s);
 
         let snapshot = flown.sim.now();
-        let view = scenery.view(stage::eye_m(&snapshot), stage::attitude(&snapshot, &self.head), size_px);
+        let seen = flown.seat.view(scenery, &snapshot, size_px);
+        let view = &seen.view;
         let heavens = flown.sun.at(&self.world, snapshot.date);
-        self.record.follow(scenery, &view, &snapshot, heavens);
+        self.record.follow(scenery, view, &snapshot, heavens);
         let hud = if self.hud_shown {
             let slowed = flown.is_slowed(&snapshot);
             let message = self.message.as_ref().filter(|(_, since)| since.elapsed() < MESSAGE);
@@ -267,12 +280,12 @@ impl<'a> Cockpit<'a> {
             status.extend(slowed.then_some("SLOWED"));
             status.extend(message.map(|(text, _)| text.as_str()));
             let captions = Captions { frame_ms: self.frame_ms, status: &status, hint: flown.hint(&snapshot) };
-            stage::hud(&self.world, &snapshot, &view, &self.head, captions)
+            stage::hud(&self.world, &snapshot, &seen, &heavens, captions)
         } else {
             Vec::new()
         };
         let picture = self.picture_wanted.then(|| hud.clone());
-        scenery.draw(&view, heavens, snapshot.time_s, hud, target).map_err(super::device_failed)?;
+        scenery.draw(view, heavens, snapshot.time_s, hud, target).map_err(super::device_failed)?;
         if let Some(Awaited { since, axis, before }) = self.awaited {
             if axis(&snapshot.controls) != before {
                 self.shown = Some(since);
@@ -287,12 +300,12 @@ impl<'a> Cockpit<'a> {
             flown.sim.send(Message::Paused(false));
             flown.begun = Some(Instant::now());
         }
-        self.record.frame(scenery, &view, &snapshot, None);
+        self.record.frame(scenery, view, &snapshot, None);
         scenery.look.size_px = size_px;
         if let Some(hud) = picture {
             self.picture_wanted = false;
             let format = *format;
-            self.take_picture(&view, &snapshot, heavens, hud, format);
+            self.take_picture(view, &snapshot, heavens, hud, format);
         }
         Ok(if self.is_over() { Flow::Close } else { Flow::Continue })
     }

@@ -69,6 +69,10 @@ pub enum Command {
     BlockOverlay,
     /// Head-up display on or off.
     Hud,
+    /// The next place to see from.
+    NextCamera,
+    /// Back to the pilot's eye.
+    CockpitCamera,
     /// An hour later.
     TimeForward,
     /// An hour earlier.
@@ -101,6 +105,8 @@ impl fmt::Display for Command {
             Self::Wireframe => "wireframe",
             Self::BlockOverlay => "block overlay",
             Self::Hud => "head-up display",
+            Self::NextCamera => "next camera",
+            Self::CockpitCamera => "cockpit",
             Self::TimeForward => "an hour later",
             Self::TimeBack => "an hour earlier",
             Self::DateForward => "a month later",

@@ -55,6 +55,8 @@ pub const DEFAULT_KEYS: &[(&str, KeyAction)] = &[
     ("F2", Do(Command::Wireframe)),
     ("F3", Do(Command::BlockOverlay)),
     ("KeyH", Do(Command::Hud)),
+    ("KeyC", Do(Command::NextCamera)),
+    ("F1", Do(Command::CockpitCamera)),
     ("BracketRight", Do(Command::TimeForward)),
     ("BracketLeft", Do(Command::TimeBack)),
     ("Period", Do(Command::DateForward)),

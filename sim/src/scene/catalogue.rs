@@ -80,6 +80,21 @@ impl Catalogue {
         place("shape", &self.shapes, name)
     }
 
+    /// Names of the models, in order.
+    pub fn model_names(&self) -> impl Iterator<Item = &str> {
+        self.models.iter().map(|named| named.name.as_str())
+    }
+
+    /// Names of the projectiles, in order.
+    pub fn projectile_names(&self) -> impl Iterator<Item = &str> {
+        self.projectiles.iter().map(|named| named.name.as_str())
+    }
+
+    /// Names of the targets' shapes, in order.
+    pub fn shape_names(&self) -> impl Iterator<Item = &str> {
+        self.shapes.iter().map(|named| named.name.as_str())
+    }
+
     /// Kind, name and fingerprint of everything, in order.
     pub(super) fn prints(&self) -> impl Iterator<Item = (u8, &str, u64)> {
         let models = self.models.iter().map(|named| (0, named.name.as_str(), named.fingerprint));

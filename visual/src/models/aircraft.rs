@@ -1,0 +1,80 @@
+//! What flies: a light aircraft.
+//!
+//! Frame: see [`super`].
+
+use super::mesh::{Mesh, Paint};
+use super::parts::{DARK, GLASS, RED, STEEL, WHITE, body, cuboid};
+use super::vehicles::wheel;
+use glam::Vec3;
+
+/// A flat surface of an aircraft: root and tip chords (x, y, front z, back z), mirrored, with a thickness at the root.
+pub(super) fn wing(mesh: &mut Mesh, root: [f32; 4], tip: [f32; 4], thick_m: f32, paint: Paint) {
+    for side in [-1.0_f32, 1.0] {
+        let section = |[x, y, front, back]: [f32; 4], thick: f32| {
+            let third = front + 0.3 * (back - front);
+            vec![
+                Vec3::new(side * x, y, front),
+                Vec3::new(side * x, y + 0.5 * thick, third),
+                Vec3::new(side * x, y, back),
+                Vec3::new(side * x, y - 0.5 * thick, third),
+            ]
+        };
+        let (near, far) = (section(root, thick_m), section(tip, 0.6 * thick_m));
+        if side > 0.0 {
+            mesh.loft(
+                &[near, far].map(|mut ring| {
+                    ring.reverse();
+                    ring
+                }),
+                paint,
+            );
+        } else {
+            mesh.loft(&[near, far], paint);
+        }
+    }
+}
+
+pub(super) fn aircraft(mesh: &mut Mesh) {
+    body(
+        mesh,
+        &[
+            [-2.7, 1.2, 0.25, 0.25],
+            [-2.4, 1.22, 0.45, 0.42],
+            [-1.1, 1.28, 0.56, 0.55],
+            [0.9, 1.4, 0.55, 0.62],
+            [2.2, 1.45, 0.36, 0.4],
+            [5.4, 1.55, 0.09, 0.16],
+        ],
+        10,
+        WHITE,
+    );
+    // Windscreen and cabin under the wing.
+    body(
+        mesh,
+        &[[-1.2, 1.78, 0.2, 0.05], [-0.6, 1.95, 0.5, 0.26], [1.0, 1.98, 0.5, 0.24], [1.9, 1.75, 0.2, 0.08]],
+        8,
+        GLASS,
+    );
+    wing(mesh, [0.0, 2.22, -0.85, 0.75], [5.5, 2.3, -0.7, 0.45], 0.2, WHITE);
+    wing(mesh, [0.0, 1.6, 4.4, 5.4], [1.7, 1.6, 4.65, 5.3], 0.09, WHITE);
+    let fin = |x: f32| [(3.9, 1.65), (5.5, 1.6), (5.75, 2.7), (5.2, 2.7)].map(|(z, y)| Vec3::new(x, y, z)).to_vec();
+    mesh.loft(&[fin(0.06), fin(-0.06)], RED);
+    body(mesh, &[[-3.05, 1.2, 0.04, 0.04], [-2.7, 1.2, 0.17, 0.17]], 6, RED);
+    cuboid(mesh, [-0.95, 1.14, -2.85], [0.95, 1.26, -2.8], DARK);
+    wheel(mesh, 0.0, -1.9, 0.2, 0.13);
+    for x in [-1.15_f32, 1.15] {
+        wheel(mesh, x, 0.3, 0.24, 0.16);
+        let foot = Vec3::new(x, 0.3, 0.3);
+        mesh.loft(
+            &[
+                [(-0.05, -0.06), (0.05, -0.06), (0.05, 0.06), (-0.05, 0.06)]
+                    .map(|(a, b)| foot + Vec3::new(a, 0.0, -b))
+                    .to_vec(),
+                [(-0.05, -0.06), (0.05, -0.06), (0.05, 0.06), (-0.05, 0.06)]
+                    .map(|(a, b)| Vec3::new(x * 0.35 + a, 0.95, 0.1 - b))
+                    .to_vec(),
+            ],
+            STEEL,
+        );
+    }
+}
