@@ -46,6 +46,8 @@ pub enum Verb {
     Shot(ShotArgs),
     /// Take many pictures from a list, and a contact sheet of them.
     Gallery(GalleryArgs),
+    /// Show what the sticks of this machine say, and write a file that binds them.
+    Input(InputArgs),
     /// Measure speed beside a yardstick in the same run.
     Bench(BenchArgs),
     /// Measure accuracy against cost for every setting.
@@ -127,6 +129,9 @@ pub struct FlyArgs {
     /// How fast, metres a second.
     #[arg(long, value_name = "V", value_parser = values::speed_mps, allow_hyphen_values = true)]
     pub speed_mps: Option<f64>,
+    /// Bindings of sticks, as `poligon input --write` makes them [default: the pilot's own, if there are any].
+    #[arg(long, value_name = "FILE")]
+    pub sticks: Option<PathBuf>,
     /// Where the flight is seen from.
     #[arg(long, value_name = "C", value_enum, default_value = "cockpit")]
     pub camera: Camera,
@@ -139,6 +144,20 @@ pub struct FlyArgs {
     /// Also write the report, as JSON, to this file.
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
+}
+
+/// `poligon input`
+#[derive(Debug, Args)]
+pub struct InputArgs {
+    /// Bindings of sticks; with --write, the file to write [default: poligon/sticks.toml in the folder for settings].
+    #[arg(long, value_name = "FILE")]
+    pub sticks: Option<PathBuf>,
+    /// Ask for one control after the other and write the file that binds them.
+    #[arg(long)]
+    pub write: bool,
+    /// How long to listen, seconds; with --write, at most for each control [default: 15, or 10].
+    #[arg(long = "seconds", value_name = "T", value_parser = values::seconds, allow_hyphen_values = true)]
+    pub seconds_s: Option<f64>,
 }
 
 /// `poligon bake`

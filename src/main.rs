@@ -19,6 +19,7 @@ mod progress;
 mod report;
 mod scenery;
 mod stage;
+mod sticks;
 mod still;
 mod things;
 mod thread_time;
@@ -65,6 +66,7 @@ fn run(line: &CommandLine, started: Instant) -> Result<(), Failure> {
         Verb::Simulate(args) => verbs::simulate::run(args, output),
         Verb::Shot(args) => verbs::shot::run(args, output),
         Verb::Gallery(args) => verbs::gallery::run(args, output),
+        Verb::Input(args) => verbs::input::run(args, output),
         Verb::Bench(args) => verbs::bench::run(args, output),
         Verb::Trade(args) => verbs::trade::run(args, output),
         Verb::Trajectory(args) => verbs::trajectory::run(args, output),

@@ -13,6 +13,7 @@ use crate::report::{self, Fly};
 use crate::scenery::{self, Heavens, Look, Scenery};
 use crate::stage::cameras::Camera;
 use crate::stage::{self, Captions, Seat, Sun};
+use crate::sticks;
 use sim::input::Input;
 use sim::input::joystick::Joystick;
 use sim::input::keyboard::Keyboard;
@@ -49,7 +50,7 @@ const HINT_SLEW: &str = "ARROWS MOVE AND TURN   PGUP PGDN CLIMB   Y FLY FROM HER
 /// # Errors
 /// [`Failure`] says what was expected and what was found.
 pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, Failure> {
-    let joystick = match Joystick::open() {
+    let joystick = match Joystick::bound(sticks::bindings(args.sticks.as_deref())?) {
         Ok(joystick) => Some(joystick),
         Err(error) => {
             output::tell(format_args!("poligon: flying by keyboard: {error}"));

@@ -1,105 +1,14 @@
-//! How sticks are bound: raw codes of axes and buttons to what they move and command.
+//! What bound sticks say: from axes and buttons of devices to what they move and command.
 //!
-//! Knows no library, so tests can feed it what no device would send. Raw codes are those of the system, on Linux
-//! `type << 16 | code` of linux/input-event-codes.h; a device is known by vendor and product.
+//! Knows no library, so tests can feed it what no device would send. A device is known by vendor and product and bound
+//! by the first of the [`Profile`]s that is for it, else by the first that is for any.
 //!
 //! Invariant: a device that goes leaves its axes neutral and its throttle where it was; a bad value changes nothing.
 
+use super::profile::{self, Profile, Target};
 use super::{Command, Curve, ViewLook};
 use std::collections::HashMap;
-
-/// What an axis moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Target {
-    /// Stick forward and back.
-    Pitch,
-    /// Stick left and right.
-    Roll,
-    /// Pedals or the stick's twist.
-    Yaw,
-    /// Throttle lever: -1 closed, 1 open.
-    Throttle,
-    /// The hat left and right.
-    LookSide,
-    /// The hat forward and back.
-    LookUp,
-}
-
-/// One axis of a device.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AxisBinding {
-    /// Raw code.
-    pub code: u32,
-    /// What it moves.
-    pub target: Target,
-    /// How.
-    pub curve: Curve,
-}
-
-/// How the axes and buttons of a kind of device are bound.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Profile {
-    /// USB vendor and product, or `None` for any stick.
-    pub device: Option<(u16, u16)>,
-    /// Axes.
-    pub axes: &'static [AxisBinding],
-    /// Buttons by raw code.
-    pub buttons: &'static [(u32, Command)],
-}
-
-const fn axis(code: u32, target: Target, dead_zone: f64, softness: f64, inverted: bool) -> AxisBinding {
-    AxisBinding { code: 3 << 16 | code, target, curve: Curve { dead_zone, softness, inverted } }
-}
-
-const fn button(code: u32, command: Command) -> (u32, Command) {
-    (1 << 16 | code, command)
-}
-
-/// ABS_X, ABS_Y, ABS_Z, ABS_RZ, ABS_THROTTLE, ABS_RUDDER, ABS_HAT0X, ABS_HAT0Y; BTN_TRIGGER and those after it.
-const STICK_BUTTONS: &[(u32, Command)] = &[
-    button(0x120, Command::Pause),
-    button(0x121, Command::Look(ViewLook::Back)),
-    button(0x122, Command::Reset),
-    button(0x123, Command::Slew),
-    button(0x124, Command::Hud),
-    button(0x125, Command::Screenshot),
-    button(0x126, Command::Wireframe),
-    button(0x127, Command::BlockOverlay),
-    button(0x128, Command::Track),
-    button(0x129, Command::TimeForward),
-    button(0x12a, Command::TimeBack),
-];
-
-/// The default bindings of sticks, the particular before the general. A lever's zero is at its far end, hence inverted.
-pub const DEFAULT_PROFILES: &[Profile] = &[
-    // Thrustmaster T.16000M: twist on RZ, slider on THROTTLE.
-    Profile {
-        device: Some((0x044f, 0xb10a)),
-        axes: &[
-            axis(0, Target::Roll, 0.02, 0.35, false),
-            axis(1, Target::Pitch, 0.02, 0.35, false),
-            axis(5, Target::Yaw, 0.08, 0.3, false),
-            axis(6, Target::Throttle, 0.0, 0.0, true),
-            axis(16, Target::LookSide, 0.1, 0.0, false),
-            axis(17, Target::LookUp, 0.1, 0.0, true),
-        ],
-        buttons: STICK_BUTTONS,
-    },
-    Profile {
-        device: None,
-        axes: &[
-            axis(0, Target::Roll, 0.03, 0.3, false),
-            axis(1, Target::Pitch, 0.03, 0.3, false),
-            axis(2, Target::Throttle, 0.0, 0.0, true),
-            axis(5, Target::Yaw, 0.08, 0.3, false),
-            axis(6, Target::Throttle, 0.0, 0.0, true),
-            axis(7, Target::Yaw, 0.05, 0.3, false),
-            axis(16, Target::LookSide, 0.1, 0.0, false),
-            axis(17, Target::LookUp, 0.1, 0.0, true),
-        ],
-        buttons: STICK_BUTTONS,
-    },
-];
+use std::sync::Arc;
 
 /// Axes as the devices give them; `None` where none was moved yet.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -115,8 +24,9 @@ pub struct StickAxes {
 }
 
 /// State of all devices.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Bindings {
+    profiles: Arc<[Profile]>,
     /// Vendor and product by the number a device has while it is connected.
     devices: HashMap<usize, Option<(u16, u16)>>,
     /// Value of a target by device.
@@ -124,7 +34,23 @@ pub struct Bindings {
     looking: Option<ViewLook>,
 }
 
+impl Default for Bindings {
+    fn default() -> Self {
+        Self::new(profile::embedded())
+    }
+}
+
 impl Bindings {
+    /// No devices yet; those that come are bound by these.
+    pub fn new(profiles: Arc<[Profile]>) -> Self {
+        Self { profiles, devices: HashMap::new(), values: HashMap::new(), looking: None }
+    }
+
+    /// Whether a kind of device has a profile of its own.
+    pub fn knows(&self, vendor_product: Option<(u16, u16)>) -> bool {
+        vendor_product.is_some() && self.profiles.iter().any(|profile| profile.device == vendor_product)
+    }
+
     /// A device came.
     pub fn connected(&mut self, device: usize, vendor_product: Option<(u16, u16)>) {
         self.devices.insert(device, vendor_product);
@@ -151,7 +77,7 @@ impl Bindings {
 
     /// An axis moved to `raw`, -1..1. Gives a command where a hat was pushed or let go.
     pub fn axis(&mut self, device: usize, code: u32, raw: f64) -> Option<Command> {
-        let binding = self.profile(device).axes.iter().find(|binding| binding.code == code)?;
+        let binding = *self.profile(device)?.axes.iter().find(|binding| binding.code == code)?;
         self.move_target(device, binding.target, binding.curve, raw)
     }
 
@@ -178,7 +104,7 @@ impl Bindings {
 
     /// A button went down or up; gives its command.
     pub fn button(&mut self, device: usize, code: u32, pressed: bool) -> Option<Command> {
-        let &(_, command) = self.profile(device).buttons.iter().find(|(of, _)| *of == code)?;
+        let &(_, command) = self.profile(device)?.buttons.iter().find(|(of, _)| *of == code)?;
         match (command, pressed) {
             (command, true) => Some(command),
             (Command::Look(_), false) => Some(Command::LookEnd),
@@ -204,10 +130,10 @@ impl Bindings {
         }
     }
 
-    fn profile(&self, device: usize) -> &'static Profile {
+    fn profile(&self, device: usize) -> Option<&Profile> {
         let known = self.devices.get(&device).copied().flatten();
-        let found = DEFAULT_PROFILES.iter().find(|p| p.device.is_some() && p.device == known);
-        found.unwrap_or(&DEFAULT_PROFILES[DEFAULT_PROFILES.len() - 1])
+        let own = self.profiles.iter().find(|profile| profile.device.is_some() && profile.device == known);
+        own.or_else(|| self.profiles.iter().find(|profile| profile.device.is_none()))
     }
 }
 

@@ -125,6 +125,52 @@ impl fmt::Display for Command {
     }
 }
 
+/// Every command by the name that a file calls it.
+const NAMES: &[(&str, Command)] = &[
+    ("pause", Command::Pause),
+    ("freeze", Command::Freeze),
+    ("reset", Command::Reset),
+    ("slew", Command::Slew),
+    ("track", Command::Track),
+    ("screenshot", Command::Screenshot),
+    ("wireframe", Command::Wireframe),
+    ("block_overlay", Command::BlockOverlay),
+    ("hud", Command::Hud),
+    ("next_camera", Command::NextCamera),
+    ("cockpit_camera", Command::CockpitCamera),
+    ("time_forward", Command::TimeForward),
+    ("time_back", Command::TimeBack),
+    ("date_forward", Command::DateForward),
+    ("date_back", Command::DateBack),
+    ("rate_up", Command::RateUp),
+    ("rate_down", Command::RateDown),
+    ("look_ahead", Command::Look(ViewLook::Ahead)),
+    ("look_left", Command::Look(ViewLook::Left)),
+    ("look_right", Command::Look(ViewLook::Right)),
+    ("look_up", Command::Look(ViewLook::Up)),
+    ("look_down", Command::Look(ViewLook::Down)),
+    ("look_back", Command::Look(ViewLook::Back)),
+    ("look_end", Command::LookEnd),
+    ("quit", Command::Quit),
+];
+
+impl Command {
+    /// Names that a file may use.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        NAMES.iter().map(|(name, _)| *name)
+    }
+
+    /// The command of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        NAMES.iter().find(|(of, _)| *of == name).map(|(_, command)| *command)
+    }
+
+    /// Its name in a file; a test finds every command there.
+    pub fn name(self) -> &'static str {
+        NAMES.iter().find(|(_, of)| *of == self).map_or("", |(name, _)| name)
+    }
+}
+
 /// How a device's axis becomes a command: dead zone, softness about the middle, direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Curve {
@@ -175,6 +221,18 @@ mod tests {
             prop_assert_eq!(at(a), -at(-a));
             prop_assert!(a > b || at(a) <= at(b));
             prop_assert!(a.abs() > dead_zone || at(a) == 0.0);
+        }
+    }
+
+    #[test]
+    fn names_and_commands_belong_together() {
+        for (name, command) in NAMES {
+            assert_eq!((Command::named(name), command.name()), (Some(*command), *name));
+        }
+        for (_, action) in crate::input::keyboard::DEFAULT_KEYS {
+            if let crate::input::keyboard::KeyAction::Command(command) = action {
+                assert!(!command.name().is_empty(), "{command}");
+            }
         }
     }
 

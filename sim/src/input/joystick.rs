@@ -3,12 +3,14 @@
 //! A HOTAS throttle lies outside gilrs' gamepad set and arrives as an unknown axis, so a stick is bound by raw code and
 //! by vendor and product. What gilrs knows as a gamepad is bound by gilrs' own axes.
 
-use super::bindings::{Bindings, DEFAULT_PROFILES, Target};
+use super::bindings::Bindings;
+use super::profile::{self, Profile, Target};
 use super::{Command, Curve, ViewLook};
 use gilrs::{Axis, Button, Event, EventType, GamepadId, Gilrs, GilrsBuilder};
 use std::collections::HashMap;
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 
 /// Faulty events after which sticks are no longer read.
 const MOST_FAULTS: u32 = 8;
@@ -25,6 +27,37 @@ impl fmt::Display for JoystickError {
 
 impl std::error::Error for JoystickError {}
 
+/// What a device did, before anything is bound.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Change {
+    /// It was plugged in.
+    Came {
+        /// Its number while it is there.
+        device: usize,
+    },
+    /// It was unplugged.
+    Went {
+        /// Its number.
+        device: usize,
+    },
+    /// An axis moved.
+    Axis {
+        /// Its number.
+        device: usize,
+        /// Raw code.
+        code: u32,
+        /// -1..1.
+        raw: f64,
+    },
+    /// A button went down.
+    Button {
+        /// Its number.
+        device: usize,
+        /// Raw code.
+        code: u32,
+    },
+}
+
 /// The system's sticks.
 pub struct Joystick {
     gilrs: Gilrs,
@@ -39,10 +72,18 @@ impl Joystick {
     /// # Errors
     /// [`JoystickError`] if the system has no such input at all.
     pub fn open() -> Result<Self, JoystickError> {
+        Self::bound(profile::embedded())
+    }
+
+    /// The same, bound by these profiles.
+    ///
+    /// # Errors
+    /// [`JoystickError`] if the system has no such input at all.
+    pub fn bound(profiles: Arc<[Profile]>) -> Result<Self, JoystickError> {
         // Dead zones are ours, by axis: gilrs' own would be applied on top.
         let gilrs = GilrsBuilder::new().with_default_filters(false).build();
         let gilrs = gilrs.map_err(|error| JoystickError(error.to_string()))?;
-        let mut joystick = Self { gilrs, bindings: Bindings::default(), is_gamepad: HashMap::new(), faults: 0 };
+        let mut joystick = Self { gilrs, bindings: Bindings::new(profiles), is_gamepad: HashMap::new(), faults: 0 };
         let present: Vec<GamepadId> = joystick.gilrs.gamepads().map(|(id, _)| id).collect();
         for id in present {
             joystick.connect(id);
@@ -55,6 +96,13 @@ impl Joystick {
         &self.bindings
     }
 
+    /// Number, name, vendor and product of each connected device.
+    pub fn connected(&self) -> Vec<(usize, String, Option<(u16, u16)>)> {
+        let pads = self.gilrs.gamepads();
+        pads.map(|(id, pad)| (usize::from(id), pad.os_name().to_owned(), pad.vendor_id().zip(pad.product_id())))
+            .collect()
+    }
+
     /// Names of the connected devices with vendor and product.
     pub fn devices(&self) -> Vec<String> {
         let id = |v: Option<u16>| v.map_or("????".to_owned(), |v| format!("{v:04x}"));
@@ -65,6 +113,11 @@ impl Joystick {
     /// Takes in what happened since the last call and gives its commands. At most 1,000 events a call: a device that
     /// floods must not hold the caller.
     pub fn poll(&mut self) -> Vec<Command> {
+        self.poll_and_tell(|_| {})
+    }
+
+    /// The same, and tells each change as the device sent it.
+    pub fn poll_and_tell(&mut self, mut tell: impl FnMut(Change)) -> Vec<Command> {
         let mut commands = Vec::new();
         for _ in 0..1_000 {
             let Some(event) = self.next_event() else { break };
@@ -73,18 +126,26 @@ impl Joystick {
             let command = match event.event {
                 EventType::Connected => {
                     self.connect(event.id);
+                    tell(Change::Came { device });
                     None
                 }
-                EventType::Disconnected => self.bindings.disconnected(device),
+                EventType::Disconnected => {
+                    tell(Change::Went { device });
+                    self.bindings.disconnected(device)
+                }
                 EventType::AxisChanged(axis, value, code) => match gamepad_axis(axis).filter(|_| gamepad) {
                     Some((target, curve)) => self.bindings.move_target(device, target, curve, f64::from(value)),
                     None => {
                         let raw = raw_axis(axis, f64::from(value));
+                        tell(Change::Axis { device, code: code.into_u32(), raw });
                         self.bindings.axis(device, code.into_u32(), raw)
                     }
                 },
                 EventType::ButtonPressed(button, _) if gamepad => gamepad_button(button),
-                EventType::ButtonPressed(_, code) => self.bindings.button(device, code.into_u32(), true),
+                EventType::ButtonPressed(_, code) => {
+                    tell(Change::Button { device, code: code.into_u32() });
+                    self.bindings.button(device, code.into_u32(), true)
+                }
                 EventType::ButtonReleased(_, code) if !gamepad => self.bindings.button(device, code.into_u32(), false),
                 // A gamepad's triggers are buttons with a value: right opens the throttle, left closes it.
                 EventType::ButtonChanged(Button::RightTrigger2, value, _) if gamepad => {
@@ -117,7 +178,7 @@ impl Joystick {
     fn connect(&mut self, id: GamepadId) {
         let Some(pad) = self.gilrs.connected_gamepad(id) else { return };
         let vendor_product = pad.vendor_id().zip(pad.product_id());
-        let bound = DEFAULT_PROFILES.iter().any(|p| p.device.is_some() && p.device == vendor_product);
+        let bound = self.bindings.knows(vendor_product);
         let thumb_sticks = pad.axis_code(Axis::RightStickX).is_some() && pad.button_code(Button::South).is_some();
         self.is_gamepad.insert(usize::from(id), thumb_sticks && !bound);
         self.bindings.connected(usize::from(id), vendor_product);

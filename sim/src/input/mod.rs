@@ -7,6 +7,7 @@ mod controls;
 mod head;
 pub mod joystick;
 pub mod keyboard;
+pub mod profile;
 
 pub use controls::{Command, Controls, Curve, ViewLook};
 pub use head::Head;
