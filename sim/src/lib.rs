@@ -36,6 +36,7 @@ pub mod table;
 pub mod track;
 pub mod turbulence;
 pub mod utc;
+pub mod weapons;
 pub mod wind;
 pub mod world_ground;
 

@@ -5,7 +5,7 @@
 
 use crate::aircraft::AircraftState;
 use crate::input::Controls;
-use crate::scene::{EntityView, Event, FNV_BASIS, fnv, interpolated};
+use crate::scene::{EntityView, Event, FNV_BASIS, WeaponPage, fnv, interpolated};
 use crate::utc::UtcTime;
 use glam::DQuat;
 use std::sync::Arc;
@@ -74,6 +74,8 @@ pub struct Snapshot {
     pub projectiles: Arc<[EntityView]>,
     /// Targets, by id.
     pub targets: Arc<[EntityView]>,
+    /// The own aircraft's weapons; `None` without any. Follows from the rest, so it is no part of the hash.
+    pub weapons: Option<Arc<WeaponPage>>,
     /// What happened of late, by number (see [`crate::scene::KEPT_S`]).
     pub events: Arc<[Event]>,
     /// Events since the scene began.

@@ -173,6 +173,23 @@ impl Shape {
         self.radius_m
     }
 
+    /// Distance from a point to the shape, metres; 0 in it. Of a hull it is the distance to the farthest of the planes that
+    /// the point is in front of: exact before a face, less than the true one beside edges and corners.
+    pub fn distance_m(&self, from_m: DVec3) -> f64 {
+        let aside = || from_m.x.hypot(from_m.z);
+        match &self.form {
+            Form::Sphere { radius_m } => (from_m.length() - radius_m).max(0.0),
+            Form::Block { half_m } => (from_m.abs() - half_m).max(DVec3::ZERO).length(),
+            Form::Cylinder { half_height_m, radius_m } => {
+                (aside() - radius_m).max(0.0).hypot((from_m.y.abs() - half_height_m).max(0.0))
+            }
+            Form::Capsule { half_height_m, radius_m } => {
+                (aside().hypot((from_m.y.abs() - half_height_m).max(0.0)) - radius_m).max(0.0)
+            }
+            Form::Hull { planes } => planes.iter().map(|p| p.normal.dot(from_m) - p.offset_m).fold(0.0, f64::max),
+        }
+    }
+
     /// Where the segment first is in the shape; `None` if it misses it.
     pub fn enter(&self, from_m: DVec3, to_m: DVec3) -> Option<Entry> {
         let line = Line { start: from_m, along: to_m - from_m };

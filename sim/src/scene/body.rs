@@ -6,6 +6,7 @@
 //!
 //! Invariants others rely on: a state is finite and its quaternion of length 1; a step allocates nothing.
 
+use super::arms::StoresLoad;
 use super::codec::coded;
 use super::event::EndReason;
 use super::failure::{Armed, Fault, Fuel, Tanks};
@@ -73,6 +74,8 @@ pub(super) struct Body {
     /// Controls as commanded.
     pub controls: Vec<f64>,
     pub tanks: Option<Tanks>,
+    /// What it carries beside its model.
+    pub stores: StoresLoad,
     pub failures: Vec<Armed>,
     gust: Option<Dryden>,
     pub ended: Option<EndReason>,
@@ -85,7 +88,7 @@ pub(super) struct Body {
 }
 coded!(Stiffness { speed_mps, lambda_radps, per_flow });
 coded!(Mode { lambda_radps, flow });
-coded!(Body { model, state, controls, tanks, failures, gust, ended, jumps, stiffness, mode, looks, pieces, look_in });
+coded!(Body { model, state, controls, tanks, stores, failures, gust, ended, jumps, stiffness, mode, looks, pieces, look_in });
 
 /// What a step did beside moving.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,6 +113,7 @@ impl Body {
             state: [0.0; motion::N],
             controls: of.initial_controls(),
             tanks: start.fuel.map(|fuel| Tanks::new(fuel, of.mass_kg)).transpose()?,
+            stores: StoresLoad::default(),
             failures: Vec::new(),
             gust: None,
             ended: None,
@@ -155,6 +159,10 @@ impl Body {
         }
         if !(1..=MOST_PIECES).contains(&self.pieces) {
             return Err(Refused::new(format_args!("body.pieces: expected 1..=1000, found {}", self.pieces)));
+        }
+        if !(0.0..=1e7).contains(&self.stores.mass_kg) {
+            let found = self.stores.mass_kg;
+            return Err(Refused::new(format_args!("body.stores: expected 0..=1e7 kg, found {found}")));
         }
         self.tanks.as_ref().map_or(Ok(()), |tanks| tanks.check(model.mass_kg))
     }
@@ -227,6 +235,7 @@ impl Body {
                 motion.thrust_share = 0.0;
             }
         }
+        motion.mass_kg += self.stores.mass_kg;
         for armed in self.failures.iter().filter(|armed| armed.active) {
             match armed.fault {
                 Fault::Stuck(control, _) | Fault::Free(control) => {

@@ -13,6 +13,7 @@ use crate::ballistics::projectile::Projectile;
 use crate::ballistics::shape::Shape;
 use crate::rigid::Model;
 use crate::track::Track;
+use crate::weapons::{TargetKind, Weapon};
 use std::fmt::{self, Debug, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -31,6 +32,10 @@ pub struct Catalogue {
     pub(super) models: Vec<Named<Arc<Model>>>,
     pub(super) projectiles: Vec<Named<Arc<Projectile>>>,
     pub(super) shapes: Vec<Named<Shape>>,
+    /// Weapons; the projectile of each has its name, too.
+    pub(super) weapons: Vec<Named<Arc<Weapon>>>,
+    /// Kinds of targets; the shape of each has its name, too.
+    pub(super) kinds: Vec<Named<Arc<TargetKind>>>,
     /// The own aircraft's track, for restoring a scene that has one.
     pub track: Option<Track>,
 }
@@ -68,6 +73,47 @@ impl Catalogue {
         add(&mut self.shapes, "shape", name, shape, print)
     }
 
+    /// Adds a weapon, and its projectile under the same name.
+    ///
+    /// # Errors
+    /// [`Refused`] if the name is taken or too long.
+    pub fn add_weapon(&mut self, name: &str, weapon: Weapon) -> Result<(), Refused> {
+        self.add_projectile(name, weapon.projectile.clone())?;
+        let projectile = Projectile { file: PathBuf::new(), drag_file: None, ..weapon.projectile.clone() };
+        let print = fingerprint(&Weapon { file: PathBuf::new(), projectile, ..weapon.clone() });
+        add(&mut self.weapons, "weapon", name, Arc::new(weapon), print)
+    }
+
+    /// Adds a kind of target, and its shape under the same name.
+    ///
+    /// # Errors
+    /// [`Refused`] if the name is taken or too long.
+    pub fn add_target_kind(&mut self, name: &str, kind: TargetKind) -> Result<(), Refused> {
+        self.add_shape(name, kind.shape.clone())?;
+        let print = fingerprint(&TargetKind { file: PathBuf::new(), ..kind.clone() });
+        add(&mut self.kinds, "target", name, Arc::new(kind), print)
+    }
+
+    /// The weapon of an event or a score.
+    pub fn weapon_at(&self, place: u32) -> Option<(&str, &Weapon)> {
+        self.weapons.get(place as usize).map(|named| (named.name.as_str(), &*named.thing))
+    }
+
+    /// The kind of target whose shape has this place; `None` of a bare shape.
+    pub fn kind_of_shape(&self, shape: u32) -> Option<&TargetKind> {
+        let name = &self.shapes.get(shape as usize)?.name;
+        self.kind(name).map(|kind| &*self.kinds[kind as usize].thing)
+    }
+
+    /// The place of a kind of target, if there is one of this name.
+    pub(super) fn kind(&self, name: &str) -> Option<u32> {
+        self.kinds.iter().position(|named| named.name == name).map(|place| place as u32)
+    }
+
+    pub(super) fn weapon(&self, name: &str) -> Result<u32, Refused> {
+        place("weapon", &self.weapons, name)
+    }
+
     pub(super) fn model(&self, name: &str) -> Result<u32, Refused> {
         place("model", &self.models, name)
     }
@@ -100,7 +146,9 @@ impl Catalogue {
         let models = self.models.iter().map(|named| (0, named.name.as_str(), named.fingerprint));
         let projectiles = self.projectiles.iter().map(|named| (1, named.name.as_str(), named.fingerprint));
         let shapes = self.shapes.iter().map(|named| (2, named.name.as_str(), named.fingerprint));
-        models.chain(projectiles).chain(shapes)
+        let weapons = self.weapons.iter().map(|named| (3, named.name.as_str(), named.fingerprint));
+        let kinds = self.kinds.iter().map(|named| (4, named.name.as_str(), named.fingerprint));
+        models.chain(projectiles).chain(shapes).chain(weapons).chain(kinds)
     }
 }
 

@@ -13,6 +13,7 @@ use crate::aircraft::{AircraftState, Condition};
 use crate::input::{self, Controls};
 use crate::snapshot::StableId;
 use crate::utc::UtcTime;
+use crate::weapons::{Aim, Fuze};
 use glam::{DQuat, DVec3};
 
 /// What stands still.
@@ -108,6 +109,43 @@ pub enum Command {
         rounds: u32,
         /// Rate of fire; 0 for a single round.
         per_minute: f64,
+    },
+    /// Hangs rounds of a weapon on an owner: one more station.
+    Load {
+        /// Whose.
+        owner: StableId,
+        /// The weapon's name in the catalogue.
+        weapon: String,
+        /// How many.
+        rounds: u32,
+        /// Where: metres from its reference point, its axes.
+        at_m: DVec3,
+    },
+    /// What the crew sets of its weapons.
+    Arm {
+        /// Whose.
+        owner: StableId,
+        /// Whether anything may be released.
+        master: bool,
+        /// The selected weapon.
+        weapon: Option<String>,
+        /// The fuze of all that is released from now on; `None` leaves every weapon its own.
+        fuze: Option<Fuze>,
+    },
+    /// Releases or fires rounds of a weapon from the owner's stations: a ripple, a salvo or a burst.
+    Release {
+        /// Who.
+        owner: StableId,
+        /// The weapon's name.
+        weapon: String,
+        /// How many in all; fewer if fewer are left.
+        rounds: u32,
+        /// How many leave at the same time.
+        together: u32,
+        /// Between one lot and the next, seconds; 0 is the weapon's own rate.
+        interval_s: f64,
+        /// What they are meant for.
+        aim: Aim,
     },
     /// Ends all bursts of an owner.
     CeaseFire {
@@ -209,6 +247,23 @@ impl Coded for Command {
                 (*rounds, *per_minute).put(out);
             }
             Self::CeaseFire { owner } => (15u8, *owner).put(out),
+            Self::Load { owner, weapon, rounds, at_m } => {
+                (16u8, *owner).put(out);
+                weapon.put(out);
+                (*rounds, *at_m).put(out);
+            }
+            Self::Arm { owner, master, weapon, fuze } => {
+                (17u8, *owner).put(out);
+                master.put(out);
+                weapon.put(out);
+                fuze.put(out);
+            }
+            Self::Release { owner, weapon, rounds, together, interval_s, aim } => {
+                (18u8, *owner).put(out);
+                weapon.put(out);
+                ([*rounds, *together], *interval_s).put(out);
+                aim.put(out);
+            }
         }
     }
 
@@ -242,7 +297,21 @@ impl Coded for Command {
                 Self::Fire { owner, projectile, muzzle, rounds, per_minute }
             }
             15 => Self::CeaseFire { owner: from.take()? },
-            found => return Err(from.refuse(format_args!("command: expected 0..=15, found {found}"))),
+            16 => {
+                let (owner, weapon) = (from.take()?, from.take()?);
+                let (rounds, at_m) = from.take()?;
+                Self::Load { owner, weapon, rounds, at_m }
+            }
+            17 => {
+                let (owner, master) = (from.take()?, from.take()?);
+                Self::Arm { owner, master, weapon: from.take()?, fuze: from.take()? }
+            }
+            18 => {
+                let (owner, weapon) = (from.take()?, from.take()?);
+                let ([rounds, together], interval_s): ([u32; 2], f64) = from.take()?;
+                Self::Release { owner, weapon, rounds, together, interval_s, aim: from.take()? }
+            }
+            found => return Err(from.refuse(format_args!("command: expected 0..=18, found {found}"))),
         })
     }
 }

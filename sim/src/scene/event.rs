@@ -8,6 +8,7 @@
 
 use super::codec::{Coded, FNV_BASIS, Reader, SaveError, coded, coded_choice, fnv};
 use crate::snapshot::StableId;
+use crate::weapons::{Damage, Score};
 use glam::DVec3;
 use terrain::features::index::ObjectId;
 
@@ -119,6 +120,49 @@ pub enum Happening {
         /// Whose.
         id: StableId,
     },
+    /// A warhead burst.
+    Burst {
+        /// The projectile that carried it.
+        projectile: StableId,
+        /// Its weapon's place among the catalogue's.
+        weapon: u32,
+        /// Who released it.
+        owner: StableId,
+        /// Which of the owner's rounds it was, from 0.
+        round: u64,
+        /// Where.
+        point_m: DVec3,
+        /// Its charge, kg of TNT.
+        tnt_kg: f64,
+        /// Whether it burst in the ground.
+        buried: bool,
+        /// Whether it burst above it.
+        in_air: bool,
+    },
+    /// A target's state of damage changed.
+    Damage {
+        /// The target.
+        id: StableId,
+        /// What is left of it.
+        state: Damage,
+        /// Who did it.
+        owner: StableId,
+        /// With which of its rounds, from 0.
+        round: u64,
+    },
+    /// A burst left a crater.
+    Crater {
+        /// Its middle, on the ground as it was.
+        centre_m: DVec3,
+        /// Of its rim in plan, metres.
+        radius_m: f64,
+        /// Below the ground, metres.
+        depth_m: f64,
+        /// Whether the posts can show it: a smaller one is a decal.
+        changes_posts: bool,
+    },
+    /// What a rocket or a bomb came to.
+    Score(Score),
     /// A command that was due was refused.
     Refused {
         /// What was expected and what was found.
@@ -169,6 +213,21 @@ impl Coded for Happening {
                 out.push(5);
                 why.put(out);
             }
+            Self::Burst { projectile, weapon, owner, round, point_m, tnt_kg, buried, in_air } => {
+                (6u8, (*projectile, *weapon)).put(out);
+                (*owner, *round).put(out);
+                (*point_m, *tnt_kg).put(out);
+                (*buried, *in_air).put(out);
+            }
+            Self::Damage { id, state, owner, round } => {
+                (7u8, (*id, *state)).put(out);
+                (*owner, *round).put(out);
+            }
+            Self::Crater { centre_m, radius_m, depth_m, changes_posts } => {
+                (8u8, *centre_m).put(out);
+                ([*radius_m, *depth_m], *changes_posts).put(out);
+            }
+            Self::Score(score) => (9u8, *score).put(out),
         }
     }
     fn take(from: &mut Reader<'_>) -> Result<Self, SaveError> {
@@ -183,7 +242,25 @@ impl Coded for Happening {
             3 => Self::Failure { id: from.take()?, name: from.take()? },
             4 => Self::OutOfFuel { id: from.take()? },
             5 => Self::Refused { why: from.take()? },
-            found => return Err(from.refuse(format_args!("event: expected 0..=5, found {found}"))),
+            6 => {
+                let (projectile, weapon) = from.take()?;
+                let (owner, round) = from.take()?;
+                let (point_m, tnt_kg) = from.take()?;
+                let (buried, in_air) = from.take()?;
+                Self::Burst { projectile, weapon, owner, round, point_m, tnt_kg, buried, in_air }
+            }
+            7 => {
+                let (id, state) = from.take()?;
+                let (owner, round) = from.take()?;
+                Self::Damage { id, state, owner, round }
+            }
+            8 => {
+                let centre_m = from.take()?;
+                let ([radius_m, depth_m], changes_posts): ([f64; 2], bool) = from.take()?;
+                Self::Crater { centre_m, radius_m, depth_m, changes_posts }
+            }
+            9 => Self::Score(from.take()?),
+            found => return Err(from.refuse(format_args!("event: expected 0..=9, found {found}"))),
         })
     }
 }

@@ -112,6 +112,21 @@ impl SceneGround {
         }
     }
 
+    /// `false` only if a path meets neither the ground nor a thing, or no deeper than its own bend; cheaper than a sweep,
+    /// as it asks about one segment: the chord lowered by twice the bend.
+    pub fn may_touch(&self, path: &StepPath) -> bool {
+        let Some(area) = &self.area else { return true };
+        let down = DVec3::Y * (2.0 * path.bulge_m());
+        let (from_m, to_m) = (path.from_m - down, path.to_m - down);
+        area.segment(from_m, to_m).is_some()
+            || self.objects.as_ref().is_some_and(|objects| objects.segment(from_m, to_m).is_some())
+    }
+
+    /// Distance between the posts, metres; `None` of a ground that has none.
+    pub fn step_m(&self) -> Option<f64> {
+        self.area.as_ref().map(|area| area.grid().step_m)
+    }
+
     fn looked_at(&self, path: &StepPath) -> Option<GroundTouch> {
         if !path.is_sound() {
             return None;

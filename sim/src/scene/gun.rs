@@ -1,12 +1,13 @@
 //! Firing: bursts in time, and where a round leaves its owner, how fast and in which direction.
 //!
-//! Rounds of a burst leave at equal times, also between two steps: the owner is then between its two poses, and the
-//! shell flies the rest of the step. Direction and speed are spread by normal numbers of the stream (seed of the
+//! Rounds of a burst leave at equal times (of a ripple so many together), also between two steps: the owner is then between
+//! its two poses, and the shell flies the rest of the step. A burst of a weapon takes its rounds from its owner's stations. Direction and speed are spread by normal numbers of the stream (seed of the
 //! scenario, owner, round), so no other owner's firing changes a shot; two bursts of
 //! one owner share its rounds, in the order in which they leave.
 //!
 //! Body axes for muzzles (forward, right, down; of a target, its shape's axes), world axes outside; metres, seconds.
 
+use super::arms::Load;
 use super::codec::coded;
 use super::{MOST_SPEED_MPS, Refused};
 use crate::random::Stream;
@@ -19,6 +20,8 @@ pub const MOST_PER_MINUTE: f64 = 100_000.0;
 const MOST_SIGMA_RAD: f64 = 1.0;
 /// Farthest muzzle from the owner's reference point, metres.
 const MOST_OFFSET_M: f64 = 1_000.0;
+/// Most rounds that leave together.
+const MOST_TOGETHER: u32 = 1_000;
 
 /// Where and how rounds leave.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,14 +53,18 @@ pub(super) struct Carriage {
 pub(super) struct Burst {
     pub owner: StableId,
     pub projectile: u32,
-    muzzle: Muzzle,
+    pub muzzle: Muzzle,
+    /// The weapon whose rounds they are.
+    pub load: Option<Load>,
     /// When the first left, scene time, seconds.
     first_s: f64,
     interval_s: f64,
     fired: u32,
     rounds: u32,
+    /// Rounds that leave together.
+    together: u32,
 }
-coded!(Burst { owner, projectile, muzzle, first_s, interval_s, fired, rounds });
+coded!(Burst { owner, projectile, muzzle, load, first_s, interval_s, fired, rounds, together });
 
 /// A round as it leaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,7 +80,7 @@ impl Muzzle {
         Self { offset_m: DVec3::ZERO, direction: DVec3::X, speed_mps, sigma_rad: 0.0, speed_sigma_mps: 0.0 }
     }
 
-    fn check(&self) -> Result<(), Refused> {
+    pub(super) fn check(&self) -> Result<(), Refused> {
         let Self { offset_m, direction, speed_mps, sigma_rad, speed_sigma_mps } = *self;
         let refuse = |key: &str, range: &str, found: &dyn std::fmt::Display| {
             Err(Refused::new(format_args!("muzzle.{key}: expected {range}, found {found}")))
@@ -94,6 +101,23 @@ impl Muzzle {
             return refuse("speed_sigma_mps", "0..=12000 m/s", &speed_sigma_mps);
         }
         Ok(())
+    }
+}
+
+impl Muzzle {
+    /// A round without spread.
+    pub(super) fn aimed(&self, at: &Carriage) -> Shot {
+        self.shot(at, self.direction.normalize_or(DVec3::X), self.speed_mps)
+    }
+
+    fn shot(&self, at: &Carriage, straight: DVec3, speed_mps: f64) -> Shot {
+        let direction = at.attitude * straight;
+        let turning_mps = at.attitude * at.rates_radps.cross(self.offset_m);
+        Shot {
+            position_m: at.position_m + at.attitude * self.offset_m,
+            velocity_mps: at.velocity_mps + turning_mps + direction * speed_mps,
+            bore: direction,
+        }
     }
 }
 
@@ -131,15 +155,40 @@ impl Burst {
             )));
         }
         let interval_s = if rounds == 1 { 0.0 } else { 60.0 / per_minute };
-        Ok(Self { owner, projectile, muzzle, first_s: now_s, interval_s, fired: 0, rounds })
+        Ok(Self {
+            owner,
+            projectile,
+            muzzle,
+            load: None,
+            first_s: now_s,
+            interval_s,
+            fired: 0,
+            rounds,
+            together: 1,
+        })
+    }
+
+    /// Rounds of a weapon, so many together every `interval_s`.
+    pub fn of_weapon(self, load: Load, together: u32, interval_s: f64) -> Result<Self, Refused> {
+        if !(1..=MOST_TOGETHER).contains(&together) {
+            return Err(Refused::new(format_args!("release.together: expected 1..={MOST_TOGETHER}, found {together}")));
+        }
+        let least_s = 60.0 / MOST_PER_MINUTE;
+        if !(least_s..=1e4).contains(&interval_s) {
+            return Err(Refused::new(format_args!(
+                "release.interval_s: expected {least_s}..=10000 s, found {interval_s}"
+            )));
+        }
+        Ok(Self { load: Some(load), together, interval_s, ..self })
     }
 
     /// What a restored one must be at a time: rounds that were due long ago would all leave at once.
     pub fn check(&self, now_s: f64, step_s: f64) -> Result<(), Refused> {
         self.muzzle.check()?;
+        let together = (1..=MOST_TOGETHER).contains(&self.together);
         let fast = self.interval_s < 60.0 / MOST_PER_MINUTE * (1.0 - 1e-9) && self.rounds > 1;
-        let late = self.due_s() < now_s - step_s;
-        if fast || late || self.fired > self.rounds {
+        let late = together && self.due_s() < now_s - step_s;
+        if !together || fast || late || self.fired > self.rounds {
             return Err(Refused::new("burst: expected a rate of fire and rounds that can be"));
         }
         Ok(())
@@ -161,7 +210,7 @@ impl Burst {
 
     /// When the next round leaves.
     fn due_s(&self) -> f64 {
-        self.first_s + f64::from(self.fired) * self.interval_s
+        self.first_s + f64::from(self.fired / self.together) * self.interval_s
     }
 
     /// Takes the next round that leaves before `end_s`; says when.
@@ -182,15 +231,7 @@ impl Burst {
         let (right, down) = straight.any_orthonormal_pair();
         let off = (right * random.normal() + down * random.normal()) * self.muzzle.sigma_rad;
         let speed_mps = (self.muzzle.speed_mps + random.normal() * self.muzzle.speed_sigma_mps).max(0.0);
-        let direction = at.attitude * (DQuat::from_scaled_axis(off) * straight);
-        let arm = at.attitude * self.muzzle.offset_m;
-        Shot {
-            position_m: at.position_m + arm,
-            velocity_mps: at.velocity_mps
-                + at.attitude * at.rates_radps.cross(self.muzzle.offset_m)
-                + direction * speed_mps,
-            bore: direction,
-        }
+        self.muzzle.shot(&at, DQuat::from_scaled_axis(off) * straight, speed_mps)
     }
 }
 

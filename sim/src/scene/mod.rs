@@ -5,7 +5,9 @@
 //! | `own.rs` | the own aircraft: piloted, on its track, slewed |
 //! | `body.rs`, `failure.rs` | rigid bodies, their failures and fuel |
 //! | `shell.rs`, `gun.rs` | projectiles, and how they are fired |
-//! | `target.rs`, `target_grid.rs` | targets, and which of them a path comes near |
+//! | `arms.rs`, `effects.rs` | stations of an owner; what weapons do where they end |
+//! | `target.rs`, `route.rs`, `stance.rs` | targets, how they drive and stand |
+//! | `target_grid.rs` | which targets a path comes near |
 //! | `ground.rs`, `surroundings.rs` | the ground; Earth, air, wind, seed |
 //! | `command.rs`, `orders.rs` | commands as data, and what they do |
 //! | `step.rs` | one fixed step of everything |
@@ -19,24 +21,29 @@
 //! Invariant others rely on: a scene and the commands after it give the same [`Scene::hash`] at every later step, on
 //! any machine with the same arithmetic; saving and restoring in between changes nothing.
 
+mod arms;
 mod body;
 mod catalogue;
-mod codec;
+pub(crate) mod codec;
 mod command;
+mod effects;
 mod event;
 mod failure;
 mod ground;
 mod gun;
 mod orders;
 mod own;
+mod route;
 mod save;
 mod shell;
+mod stance;
 mod step;
 mod surroundings;
 mod target;
 mod target_grid;
 mod view;
 
+pub use arms::{MOST_STATIONS, PageRow, StoresLoad, WeaponPage};
 pub use body::{ALTITUDES_M, BodyStart};
 pub use catalogue::Catalogue;
 pub use codec::SaveError;
@@ -45,8 +52,10 @@ pub use event::{EndReason, Event, Happening, KEPT_S, MOST_KEPT, Strike};
 pub use failure::{Failure, Fuel, FuelChange, MOST_FAILURES};
 pub use ground::{GroundTouch, LOOK_M, SceneGround};
 pub use gun::{MOST_PER_MINUTE, Muzzle};
+pub use route::{MOST_WAYPOINTS, SHORTEST_LEG_M};
+pub use stance::CONTACT_M;
 pub use surroundings::{MOST_WIND_MPS, Surroundings};
-pub use target::{Height, MOST_WAYPOINTS, SHORTEST_LEG_M, TargetStart};
+pub use target::{Column, Height, Reaction, TargetStart};
 pub use view::{EntityKind, EntityView};
 
 pub(crate) use codec::{FNV_BASIS, fnv};
@@ -60,7 +69,10 @@ use crate::input::Controls;
 use crate::snapshot::{Mode, StableId};
 use crate::track::Track;
 use crate::utc::UtcTime;
+use crate::weapons::Tally;
+use arms::Arms;
 use body::{Body, Rig};
+use effects::Ended;
 use event::Log;
 use glam::{DQuat, DVec3};
 use gun::Burst;
@@ -129,6 +141,14 @@ pub struct Scene {
     bursts: Vec<Burst>,
     /// Rounds that each owner has fired.
     fired: BTreeMap<StableId, u64>,
+    /// What owners carry.
+    arms: BTreeMap<StableId, Arms>,
+    /// Projectiles that struck and whose delay runs.
+    resting: Vec<Ended>,
+    /// Sums of scores, by owner and weapon.
+    tallies: BTreeMap<(StableId, u32), Tally>,
+    /// The own aircraft's weapons as its crew sees them; follows from the rest.
+    page: Option<Arc<WeaponPage>>,
     log: Log,
     pending: VecDeque<Stamped>,
     record: Option<Vec<Stamped>>,
@@ -202,6 +222,10 @@ impl Scene {
             grid: TargetGrid::default(),
             bursts: Vec::new(),
             fired: BTreeMap::new(),
+            arms: BTreeMap::new(),
+            resting: Vec::new(),
+            tallies: BTreeMap::new(),
+            page: None,
             log: Log::new(),
             pending: VecDeque::new(),
             record: None,
@@ -232,10 +256,11 @@ impl Scene {
     /// Adds a target.
     ///
     /// # Errors
-    /// [`Refused`] if a number is none or there is no such shape.
+    /// [`Refused`] if a number is none or there is no such kind or shape.
     pub fn add_target(&mut self, start: &TargetStart) -> Result<StableId, Refused> {
         let shape = self.catalogue.shape(&start.shape)?;
-        let target = TargetState::new(start, shape)?;
+        let kind = self.catalogue.kind(&start.shape).map(|kind| (kind, &*self.catalogue.kinds[kind as usize].thing));
+        let target = TargetState::new(start, shape, kind)?;
         let id = StableId(self.next_id);
         self.enlist_targets(vec![(id, target)]);
         self.next_id += 1;

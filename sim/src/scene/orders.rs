@@ -3,6 +3,7 @@
 //! Invariant others rely on: a command is checked whole before anything changes; what is refused changes nothing. If it
 //! had been scheduled, an event tells it, and it stands in the record.
 
+use super::arms::{Arms, Load, MOST_STATIONS, Station};
 use super::body::{Body, Rig};
 use super::codec::{Coded, Reader};
 use super::event::Happening;
@@ -15,7 +16,8 @@ use super::{Command, Refused, Scene, Stamped, attitude, found, place, speed};
 use crate::aircraft::AircraftState;
 use crate::rigid::Model;
 use crate::snapshot::StableId;
-use glam::{DQuat, DVec3};
+use crate::weapons::Aim;
+use glam::{DQuat, DVec2, DVec3};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -165,9 +167,95 @@ impl Scene {
                 }
                 self.bursts.push(Burst::new(*owner, kind, *muzzle, *rounds, *per_minute, self.clock.time_s())?);
             }
+            Command::Load { owner, weapon, rounds, at_m } => self.load_station(*owner, weapon, *rounds, *at_m)?,
+            Command::Arm { owner, master, weapon, fuze } => {
+                let selected = weapon.as_deref().map(|weapon| self.catalogue.weapon(weapon)).transpose()?;
+                if let Some(fuze) = fuze {
+                    fuze.check().map_err(Refused::new)?;
+                }
+                let arms = self.arms_of(*owner)?;
+                (arms.master, arms.selected, arms.fuze) = (*master, selected, *fuze);
+            }
+            Command::Release { owner, weapon, rounds, together, interval_s, aim } => {
+                self.release(*owner, weapon, *rounds, *together, *interval_s, *aim)?;
+            }
             Command::CeaseFire { owner } => self.bursts.retain(|burst| burst.owner != *owner),
         }
         Ok(())
+    }
+
+    fn arms_of(&mut self, owner: StableId) -> Result<&mut Arms, Refused> {
+        let missing = || Refused::new(format_args!("owner: expected one with stations, found {}", owner.0));
+        self.arms.get_mut(&owner).ok_or_else(missing)
+    }
+
+    fn load_station(&mut self, owner: StableId, weapon: &str, rounds: u32, at_m: DVec3) -> Result<(), Refused> {
+        let weapon = self.catalogue.weapon(weapon)?;
+        self.catalogue.weapons[weapon as usize].thing.muzzle(at_m).check()?;
+        if self.carriage(owner).is_none() {
+            let found = owner.0;
+            return Err(Refused::new(format_args!("load.owner: expected an entity that can fire, found {found}")));
+        }
+        let hung = self.arms.get(&owner).map_or(0, |arms| arms.stations.len());
+        if hung >= MOST_STATIONS {
+            return Err(Refused::new(format_args!("load: expected at most {MOST_STATIONS} stations")));
+        }
+        let station = Station { weapon, at_m, loaded: rounds, left: rounds };
+        self.arms.entry(owner).or_default().stations.push(station);
+        self.weigh(owner);
+        Ok(())
+    }
+
+    fn release(
+        &mut self,
+        owner: StableId,
+        weapon: &str,
+        rounds: u32,
+        together: u32,
+        interval_s: f64,
+        aim: Aim,
+    ) -> Result<(), Refused> {
+        let (name, weapon, projectile) = (weapon, self.catalogue.weapon(weapon)?, self.catalogue.projectile(weapon)?);
+        let of = self.catalogue.weapons[weapon as usize].thing.clone();
+        if let Aim::Place(at_m) = aim {
+            place("release.aim", at_m)?;
+        }
+        if let Aim::Target(id) = aim
+            && found(&self.targets, id).is_none()
+        {
+            return Err(Refused::new(format_args!("release.aim: expected a target of the scene, found {}", id.0)));
+        }
+        let at_m = {
+            let arms = self.arms_of(owner)?;
+            if !arms.master {
+                return Err(Refused::new("release: expected the master arm to be on, found it off"));
+            }
+            let none = || Refused::new(format_args!("release: expected a round of {name}, found none left"));
+            arms.stations[arms.next(weapon).ok_or_else(none)?].at_m
+        };
+        if self.carriage(owner).is_none() {
+            return Err(Refused::new(format_args!("release.owner: expected one that can fire, found {}", owner.0)));
+        }
+        if self.bursts.len() >= MOST_BURSTS {
+            return Err(Refused::new(format_args!("release: expected at most {MOST_BURSTS} bursts at a time")));
+        }
+        let fuze = self.arms_of(owner)?.fuze.unwrap_or(of.fuze);
+        let interval_s = if interval_s == 0.0 { 60.0 / of.per_minute } else { interval_s };
+        let load = Load { weapon, fuze, aim, way: DVec2::ZERO };
+        let burst = Burst::new(owner, projectile, of.muzzle(at_m), rounds, of.per_minute, self.clock.time_s())?;
+        self.bursts.push(burst.of_weapon(load, together, interval_s)?);
+        Ok(())
+    }
+
+    /// Lets a body feel what its stores weigh now.
+    pub(super) fn weigh(&mut self, owner: StableId) {
+        let stores = self.stores_load(owner);
+        if let Some(entity) = found(&self.bodies, owner)
+            && let Ok(mut body) = self.ecs.get::<&mut Body>(entity)
+        {
+            body.stores = stores;
+            body.look_anew();
+        }
     }
 
     fn reposition(

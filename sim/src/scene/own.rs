@@ -147,6 +147,7 @@ impl Scene {
         self.settle(ground);
         let at = self.aircraft().position_m;
         self.height_above_ground_m = ground.height_m(at.x, at.z).filter(|h| h.is_finite()).map(|h| at.y - h);
+        self.look_at_arms(ground);
     }
 
     /// The own aircraft.

@@ -8,6 +8,7 @@
 //! Invariants others rely on: a restored scene goes on to the bit as the saved one does; hostile bytes are refused with
 //! what was expected and found, and never panic, now or in a later step.
 
+use super::arms::Arms;
 use super::body::Body;
 use super::catalogue::fingerprint;
 use super::codec::{Coded, FNV_BASIS, Reader, fnv};
@@ -21,10 +22,11 @@ use crate::clock::Clock;
 use crate::input::Controls;
 use crate::snapshot::{Mode, StableId};
 use crate::utc::UtcTime;
+use crate::weapons::Tally;
 use std::sync::Arc;
 
 const WORD: &[u8; 8] = b"PLGSCENE";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Most ids, rounds and events: no run of a scene counts so far, and a sum of two still fits.
 const MOST_COUNTED: u64 = 1 << 60;
 /// Fastest projectile that is taken back, m/s: above twice what a muzzle and its owner may give.
@@ -55,6 +57,9 @@ impl Scene {
         self.put_all::<TargetState>(&self.targets, &mut out);
         self.bursts.put(&mut out);
         self.fired.iter().map(|(owner, rounds)| (*owner, *rounds)).collect::<Vec<_>>().put(&mut out);
+        self.arms.iter().map(|(owner, arms)| (*owner, arms.clone())).collect::<Vec<_>>().put(&mut out);
+        self.resting.put(&mut out);
+        self.tallies.iter().map(|(of, tally)| (*of, *tally)).collect::<Vec<_>>().put(&mut out);
         self.log.put(&mut out);
         (self.pending.len() as u32).put(&mut out);
         self.pending.iter().for_each(|stamped| stamped.put(&mut out));
@@ -151,6 +156,9 @@ impl Scene {
             if shell.kind as usize >= self.catalogue.projectiles.len() || shell.age_s < 0.0 {
                 return Err(from.refuse("shell: expected a projectile of the catalogue and an age of 0 or more"));
             }
+            if shell.load.is_some_and(|load| load.weapon as usize >= self.catalogue.weapons.len()) {
+                return Err(from.refuse("shell: expected a weapon of the catalogue"));
+            }
             place("shell.position_m", shell.position_m()).map_err(|why| from.refuse(why))?;
             let found = shell.velocity_mps().length();
             if found > FASTEST_MPS {
@@ -163,6 +171,9 @@ impl Scene {
         for (_, target) in &targets {
             if target.shape as usize >= self.catalogue.shapes.len() {
                 return Err(from.refuse("target: expected a shape of the catalogue"));
+            }
+            if target.kind.is_some_and(|kind| kind as usize >= self.catalogue.kinds.len()) {
+                return Err(from.refuse("target: expected a kind of the catalogue"));
             }
             target.check().map_err(|why| from.refuse(why))?;
         }
@@ -179,11 +190,26 @@ impl Scene {
         self.bursts = from.take()?;
         for burst in &self.bursts {
             burst.check(self.clock.time_s(), self.clock.step_s()).map_err(|why| refuse(from, why))?;
-            if burst.projectile as usize >= self.catalogue.projectiles.len() {
+            let weapons = self.catalogue.weapons.len();
+            let beyond = burst.load.is_some_and(|load| load.weapon as usize >= weapons);
+            if burst.projectile as usize >= self.catalogue.projectiles.len() || beyond {
                 return Err(from.refuse("burst: expected a projectile of the catalogue"));
             }
         }
         self.fired = from.take::<Vec<(StableId, u64)>>()?.into_iter().collect();
+        self.arms = from.take::<Vec<(StableId, Arms)>>()?.into_iter().collect();
+        for arms in self.arms.values() {
+            arms.check(&self.catalogue).map_err(|why| refuse(from, why))?;
+        }
+        self.resting = from.take()?;
+        let weapons = self.catalogue.weapons.len();
+        for one in &self.resting {
+            one.check(weapons).map_err(|why| refuse(from, why))?;
+        }
+        self.tallies = from.take::<Vec<((StableId, u32), Tally)>>()?.into_iter().collect();
+        if self.tallies.keys().any(|(_, weapon)| *weapon as usize >= weapons) {
+            return Err(from.refuse("tally: expected a weapon of the catalogue"));
+        }
         self.log = from.take()?;
         if self.fired.values().any(|rounds| *rounds > MOST_COUNTED) || self.log.counted > MOST_COUNTED {
             return Err(from.refuse(format_args!("expected at most {MOST_COUNTED} rounds and events")));
@@ -231,7 +257,7 @@ fn take_all<C: Coded>(
 }
 
 fn take_catalogue(from: &mut Reader<'_>, catalogue: &Catalogue) -> Result<(), SaveError> {
-    const KINDS: [&str; 3] = ["model", "projectile", "shape"];
+    const KINDS: [&str; 5] = ["model", "projectile", "shape", "weapon", "target"];
     let mut ours = catalogue.prints();
     while from.take()? {
         let kind: u8 = from.take()?;

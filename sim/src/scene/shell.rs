@@ -6,6 +6,7 @@
 //! Invariants others rely on: a projectile leaves the scene by an impact or an ending that is told, never in silence;
 //! which one does not depend on the order of targets.
 
+use super::arms::Load;
 use super::body::ALTITUDES_M;
 use super::catalogue::Named;
 use super::codec::coded;
@@ -21,7 +22,8 @@ use crate::ballistics::projectile::Projectile;
 use crate::ballistics::targets::{Pose, Target, TargetImpact, target_impact};
 use crate::frame::{ned_from_world, world_from_ned};
 use crate::integrate::Integrator;
-use crate::snapshot::StableId;
+use crate::snapshot::{StableId, turned};
+use crate::weapons::Trigger;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -35,9 +37,11 @@ pub(super) struct Shell {
     pub age_s: f64,
     pub state: State,
     bore: DVec3,
+    /// The weapon that it is, with its fuze and aim.
+    pub load: Option<Load>,
     pub jumps: u32,
 }
-coded!(Shell { kind, owner, round, age_s, state, bore, jumps });
+coded!(Shell { kind, owner, round, age_s, state, bore, load, jumps });
 
 /// How a step ended for a projectile.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +49,8 @@ pub(super) enum Fate {
     Flies,
     /// What it struck, and at which fraction of the scene's step.
     Struck(Strike, f64),
+    /// Where its fuze burst it above the ground, and at which fraction of the scene's step.
+    Burst(DVec3, f64),
     Lost(EndReason),
 }
 
@@ -96,7 +102,13 @@ impl<'a> Range<'a> {
             to_mps: world_from_ned(to_v),
             step_s,
         };
-        if let Some((strike, fraction)) = self.struck(id, shell, &path, from) {
+        let struck = self.struck(id, shell, &path, from);
+        if let Some((point_m, fraction)) = self.burst_above(shell, &path)
+            && struck.is_none_or(|(_, strikes)| fraction <= strikes)
+        {
+            return Fate::Burst(point_m, from + (1.0 - from) * fraction);
+        }
+        if let Some((strike, fraction)) = struck {
             return Fate::Struck(strike, from + (1.0 - from) * fraction);
         }
         let altitude = -to_r.z;
@@ -127,6 +139,22 @@ impl<'a> Range<'a> {
         Ok(y)
     }
 
+    /// Where a height fuze bursts it on the path, and at which fraction: where the path, lowered by the fuze's height, meets
+    /// the ground, from where it is armed on.
+    fn burst_above(&self, shell: &Shell, path: &StepPath) -> Option<(DVec3, f64)> {
+        let fuze = shell.load?.fuze;
+        let Trigger::Height(height_m) = fuze.trigger else { return None };
+        let armed = ((fuze.arming_s - shell.age_s) / path.step_s).max(0.0);
+        if armed >= 1.0 {
+            return None;
+        }
+        let rest = if armed > 0.0 { path.split(armed)[1] } else { *path };
+        let down = DVec3::Y * height_m;
+        let lowered = StepPath { from_m: rest.from_m - down, to_m: rest.to_m - down, ..rest };
+        let touch = self.ground.touch(&lowered)?;
+        Some((touch.point_m + down, armed + (1.0 - armed) * touch.fraction))
+    }
+
     /// What the path strikes first, and at which fraction of it; at the same instant the target, of several the one
     /// with the lowest id.
     fn struck(&self, id: StableId, shell: &Shell, path: &StepPath, from: f64) -> Option<(Strike, f64)> {
@@ -139,7 +167,7 @@ impl<'a> Range<'a> {
                 // A round that left during the step meets a target that has moved on meanwhile.
                 let at = Pose {
                     position_m: target.from.position_m.lerp(target.to.position_m, from),
-                    attitude: target.from.attitude,
+                    attitude: turned(target.from.attitude, target.to.attitude, from),
                 };
                 target_impact(path, &[Target { from: at, ..target.clone() }], Some(shell.owner))
             };
@@ -177,9 +205,9 @@ impl<'a> Range<'a> {
 }
 
 impl Shell {
-    pub fn new(kind: u32, owner: StableId, round: u64, shot: &Shot) -> Self {
+    pub fn new(kind: u32, owner: StableId, round: u64, shot: &Shot, load: Option<Load>) -> Self {
         let state = state(ned_from_world(shot.position_m), ned_from_world(shot.velocity_mps));
-        Self { kind, owner, round, age_s: 0.0, state, bore: ned_from_world(shot.bore), jumps: 0 }
+        Self { kind, owner, round, age_s: 0.0, state, bore: ned_from_world(shot.bore), load, jumps: 0 }
     }
 
     pub fn position_m(&self) -> DVec3 {

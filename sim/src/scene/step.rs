@@ -1,13 +1,14 @@
 //! One fixed step of a scene.
 //!
 //! In this order: commands that are due; the own aircraft; bodies, targets and shells, each by id; the rounds that leave
-//! during the step, which fly what is left of it. Owners are where they are at the moment that a round leaves; targets
+//! during the step, which fly what is left of it; then what those weapons do that ended in it. Owners are where they are at the moment that a round leaves; targets
 //! move during the step while shells are swept past them.
 //!
 //! Invariant others rely on: the cost of an entity does not depend on how many others there are, and no entity costs an
 //! allocation a step; only what strikes, fires or fails may.
 
 use super::body::{Body, Outcome};
+use super::effects::Ended;
 use super::event::Happening;
 use super::gun::Carriage;
 use super::shell::{Fate, Range, Shell};
@@ -15,7 +16,7 @@ use super::target::TargetState;
 use super::{Freeze, Scene, SceneGround, found};
 use crate::ballistics::targets::Pose;
 use crate::snapshot::StableId;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// A round that hit: the target, the owner and the owner's round.
 type Hit = (StableId, StableId, u64);
@@ -33,6 +34,7 @@ impl Scene {
         if self.freeze == Freeze::Total {
             self.clock.set_date(date);
             self.bursts.iter_mut().for_each(|burst| burst.wait(dt_s));
+            self.resting.iter_mut().for_each(|one| one.time_s += dt_s);
             self.look_down(ground);
             return;
         }
@@ -125,10 +127,12 @@ impl Scene {
             moved |= swept.from != now || swept.to != now;
             (swept.from, swept.to) = (now, now);
             if target.is_restless() {
-                // A turn at a waypoint is at once: the new attitude holds for the whole step.
                 target.step(ground, dt_s);
                 swept.to = target.pose();
-                swept.from = Pose { position_m: now.position_m, ..swept.to };
+                if target.turns_at_once() {
+                    // The new attitude holds for the whole step.
+                    swept.from = Pose { position_m: now.position_m, ..swept.to };
+                }
                 moved = true;
             }
         }
@@ -139,7 +143,7 @@ impl Scene {
     }
 
     fn step_shells(&mut self, ground: &SceneGround, before: &[Option<Carriage>], from_s: f64, dt_s: f64) {
-        if self.shells.is_empty() && self.bursts.is_empty() {
+        if self.shells.is_empty() && self.bursts.is_empty() && self.resting.is_empty() {
             return;
         }
         self.views.shells.take();
@@ -147,7 +151,8 @@ impl Scene {
         let projectiles = &self.catalogue.projectiles;
         let range = Range::new(projectiles, &self.surroundings, ground, &self.swept, &self.grid, dt_s);
         let (mut hits, mut gone, mut new): (Vec<Hit>, Vec<hecs::Entity>, Vec<(StableId, Shell)>) = Default::default();
-        let log = &mut self.log;
+        let mut ended: Vec<Ended> = Vec::new();
+        let (log, tallies) = (&mut self.log, &mut self.tallies);
         // Whether it still flies.
         let mut fly = |id: StableId, shell: &mut Shell, from: f64| match range.fly(id, shell, from) {
             Fate::Flies => true,
@@ -155,11 +160,25 @@ impl Scene {
                 if let Some(target) = strike.target {
                     hits.push((target, strike.owner, strike.round));
                 }
-                log.add(from_s + fraction * dt_s, Happening::Impact(strike));
+                let (time_s, age_s) = (from_s + fraction * dt_s, shell.age_s + (fraction - from) * dt_s);
+                log.add(time_s, Happening::Impact(strike));
+                if let Some(load) = shell.load {
+                    ended.push(Ended::of_strike(&strike, shell, load, time_s, age_s));
+                }
+                false
+            }
+            Fate::Burst(point_m, fraction) => {
+                let (time_s, age_s) = (from_s + fraction * dt_s, shell.age_s + (fraction - from) * dt_s);
+                if let Some(load) = shell.load {
+                    ended.push(Ended::in_air(id, shell, load, point_m, time_s, age_s));
+                }
                 false
             }
             Fate::Lost(reason) => {
                 log.add(from_s + dt_s, Happening::Lost { id, reason });
+                if let Some(load) = shell.load {
+                    tallies.entry((shell.owner, load.weapon)).or_default().lost += 1;
+                }
                 false
             }
         };
@@ -172,6 +191,7 @@ impl Scene {
             flies
         });
         let (until_s, seed) = (from_s + dt_s, self.surroundings.seed);
+        let mut released: Vec<(StableId, u32)> = Vec::new();
         for ((burst, before), after) in self.bursts.iter_mut().zip(before).zip(&after) {
             let (Some(before), Some(after)) = (before, after) else {
                 burst.end();
@@ -179,10 +199,21 @@ impl Scene {
             };
             while let Some(due_s) = burst.next_before(until_s) {
                 let fraction = ((due_s - from_s) / dt_s).clamp(0.0, 1.0);
+                let mut load = burst.load;
+                if let Some(load) = &mut load {
+                    let Some(at_m) = self.arms.get_mut(&burst.owner).and_then(|arms| arms.take(load.weapon)) else {
+                        burst.end();
+                        break;
+                    };
+                    burst.muzzle.offset_m = at_m;
+                    let way = before.velocity_mps.lerp(after.velocity_mps, fraction);
+                    load.way = DVec2::new(way.x, way.z);
+                    released.push((burst.owner, load.weapon));
+                }
                 let round = self.fired.entry(burst.owner).or_insert(0);
                 let shot = burst.shot(seed, *round, before, after, fraction);
                 let (id, mut shell) =
-                    (StableId(self.next_id), Shell::new(burst.projectile, burst.owner, *round, &shot));
+                    (StableId(self.next_id), Shell::new(burst.projectile, burst.owner, *round, &shot, load));
                 *round += 1;
                 self.next_id += 1;
                 if fly(id, &mut shell, fraction) {
@@ -207,5 +238,13 @@ impl Scene {
                 self.views.targets.take();
             }
         }
+        for &(owner, weapon) in &released {
+            self.tallies.entry((owner, weapon)).or_default().released += 1;
+        }
+        released.dedup_by_key(|(owner, _)| *owner);
+        for (owner, _) in released {
+            self.weigh(owner);
+        }
+        self.take_effect(ended, ground, from_s, dt_s);
     }
 }

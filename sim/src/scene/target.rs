@@ -1,24 +1,28 @@
-//! Targets: a shape that stands, or drives along straight legs at a constant speed.
+//! Targets: a shape that stands, or drives along its route.
 //!
-//! World frame, metres, seconds. The reference point of the shape keeps its height over the ground, or an altitude.
-//! Within a step a target moves straight; at a waypoint it turns at once. Forward of a shape is its -Z, so an attitude
-//! of identity faces north. A hit is counted and changes nothing else: damage is for a later model.
+//! World frame, metres, seconds. A bare shape keeps its reference point at a height over the ground, or at an altitude; it
+//! turns at once at a waypoint, and a hit is counted and changes nothing else. A target of a kind stands by that kind's
+//! rule ([`super::stance`]), turns no faster than it, takes damage, and stops for good when it is destroyed. Within a step
+//! a target moves straight and turns evenly. Forward of a shape is its -Z, so an attitude of identity faces north.
 //!
 //! Invariant others rely on: positions are finite and within the bounds of any world; over void a target that follows
 //! the ground keeps its last height.
 
-use super::codec::{Coded, Reader, SaveError, coded};
+use super::codec::{Coded, Reader, SaveError, coded, coded_choice};
 use super::ground::SceneGround;
-use super::{Refused, attitude, place};
-use crate::aircraft::MAX_SPEED_MPS;
+use super::route::Route;
+use super::{Refused, attitude, place, stance};
 use crate::ballistics::targets::Pose;
 use crate::snapshot::StableId;
+use crate::weapons::target_kind::Stand;
+use crate::weapons::{Damage, TargetKind};
 use glam::{DQuat, DVec2, DVec3};
 
-/// Shortest leg of a route, metres: also at the highest speed a step passes a bounded number of waypoints.
-pub const SHORTEST_LEG_M: f64 = 1.0;
-/// Most waypoints of a route.
-pub const MOST_WAYPOINTS: usize = 10_000;
+/// Longest way driven before the start, as time, seconds.
+const MOST_AHEAD_S: f64 = 1e5;
+/// How far a scattering target drives ahead, and then ahead and aside, metres.
+const SCATTER_AHEAD_M: f64 = 10.0;
+const SCATTER_ASIDE_M: f64 = 40.0;
 
 /// What a target's height keeps to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,11 +36,11 @@ pub enum Height {
 /// A target to be added.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TargetStart {
-    /// Name of its shape in the catalogue.
+    /// Name of its kind or its bare shape in the catalogue.
     pub shape: String,
     /// Plan position (x, z), metres; with a route, its first waypoint.
     pub plan_m: DVec2,
-    /// Height of the shape's reference point.
+    /// Height of the shape's reference point; of a target of a kind, of where it stands (on water: of the water).
     pub height: Height,
     /// Shape to world; along the leg on a route.
     pub attitude: DQuat,
@@ -46,7 +50,34 @@ pub struct TargetStart {
     pub speed_mps: f64,
     /// Whether the route leads back to its first waypoint and goes round for ever.
     pub loops: bool,
+    /// How far it has come on its route at the start, as the time that it drove, seconds.
+    pub ahead_s: f64,
+    /// The column that it drives in.
+    pub column: Option<Column>,
 }
+
+/// A column: what its other members do when one of them is struck.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Column {
+    /// Its number, the same for all members.
+    pub number: u32,
+    /// What they do.
+    pub reaction: Reaction,
+}
+coded!(Column { number, reaction });
+
+/// What a column does when a member is struck.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Reaction {
+    /// It drives on.
+    DriveOn,
+    /// All stop where they are.
+    #[default]
+    Stop,
+    /// All drive off the road, by turns to the left and to the right, and stop there.
+    Scatter,
+}
+coded_choice!(Reaction { DriveOn, Stop, Scatter });
 
 impl TargetStart {
     /// A target that stands upright on the ground.
@@ -59,19 +90,11 @@ impl TargetStart {
             route_m: Vec::new(),
             speed_mps: 0.0,
             loops: false,
+            ahead_s: 0.0,
+            column: None,
         }
     }
 }
-
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Route {
-    waypoints_m: Vec<DVec2>,
-    speed_mps: f64,
-    loops: bool,
-    leg: u32,
-    along_m: f64,
-}
-coded!(Route { waypoints_m, speed_mps, loops, leg, along_m });
 
 /// A target as it is.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,12 +105,36 @@ pub(super) struct TargetState {
     pub velocity_mps: DVec3,
     height: Height,
     route: Option<Route>,
+    /// Place of its kind in the catalogue.
+    pub kind: Option<u32>,
+    /// How it stands; `None` keeps its attitude.
+    stand: Option<Stand>,
+    pub column: Option<Column>,
+    /// Whether it will not drive any more.
+    halted: bool,
+    /// 1 destroys.
+    pub damage: f64,
     pub hits: u32,
     /// Owner and number of the round that hit last.
     pub last_round: Option<(StableId, u64)>,
     pub jumps: u32,
 }
-coded!(TargetState { shape, position_m, attitude, velocity_mps, height, route, hits, last_round, jumps });
+coded!(TargetState {
+    shape,
+    position_m,
+    attitude,
+    velocity_mps,
+    height,
+    route,
+    kind,
+    stand,
+    column,
+    halted,
+    damage,
+    hits,
+    last_round,
+    jumps
+});
 
 impl Coded for Height {
     fn put(&self, out: &mut Vec<u8>) {
@@ -108,13 +155,19 @@ impl Coded for Height {
 }
 
 impl TargetState {
-    pub fn new(start: &TargetStart, shape: u32) -> Result<Self, Refused> {
+    /// A target of a kind, with its place in the catalogue, or of a bare shape.
+    pub fn new(start: &TargetStart, shape: u32, kind: Option<(u32, &TargetKind)>) -> Result<Self, Refused> {
         let (Height::OverGround(metres) | Height::Msl(metres)) = start.height;
-        let position_m = place("target.plan_m", DVec3::new(start.plan_m.x, metres, start.plan_m.y))?;
+        let mut position_m = place("target.plan_m", DVec3::new(start.plan_m.x, metres, start.plan_m.y))?;
         let mut attitude = attitude("target.attitude", start.attitude)?;
-        let route = if start.route_m.is_empty() { None } else { Some(Route::new(start)?) };
-        if let Some(route) = &route {
-            attitude = route.facing();
+        let (turn_radps, most_mps) =
+            kind.map_or((None, f64::INFINITY), |(_, of)| (Some(of.turn_radps), of.most_speed_mps));
+        let mut route = if start.route_m.is_empty() { None } else { Some(start.route(turn_radps, most_mps)?) };
+        if let Some(route) = &mut route {
+            route.advance(start.ahead_s);
+            let (plan, facing) = route.place();
+            (position_m.x, position_m.z) = (plan.x, plan.y);
+            attitude = stance::upright(facing);
         }
         Ok(Self {
             shape,
@@ -123,6 +176,11 @@ impl TargetState {
             velocity_mps: DVec3::ZERO,
             height: start.height,
             route,
+            kind: kind.map(|(place, _)| place),
+            stand: kind.map(|(_, of)| of.stand),
+            column: start.column,
+            halted: false,
+            damage: 0.0,
             hits: 0,
             last_round: None,
             jumps: 0,
@@ -136,6 +194,9 @@ impl TargetState {
         if height_m.is_nan() || height_m.abs() > 1e6 {
             return Err(Refused::new(format_args!("target.height: expected metres within 1e6, found {height_m}")));
         }
+        if self.damage.is_nan() || self.damage < 0.0 {
+            return Err(Refused::new(format_args!("target.damage: expected 0 or more, found {}", self.damage)));
+        }
         self.route.as_ref().map_or(Ok(()), Route::check)
     }
 
@@ -143,28 +204,66 @@ impl TargetState {
         Pose { position_m: self.position_m, attitude: self.attitude }
     }
 
+    /// What is left of it.
+    pub fn state(&self) -> Damage {
+        Damage::of(self.damage)
+    }
+
+    /// Adds damage; the new state if that changed. What is destroyed stands still.
+    pub fn hurt(&mut self, amount: f64) -> Option<Damage> {
+        let before = self.state();
+        self.damage += amount;
+        let after = self.state();
+        if after == Damage::Destroyed {
+            self.halted = true;
+        }
+        (after != before).then_some(after)
+    }
+
+    fn drives(&self) -> bool {
+        !self.halted && self.route.as_ref().is_some_and(|route| !route.is_over())
+    }
+
     /// Whether a step may move it.
     pub fn is_restless(&self) -> bool {
-        self.route.as_ref().is_some_and(|route| !route.is_over()) || self.velocity_mps != DVec3::ZERO
+        self.drives() || self.velocity_mps != DVec3::ZERO
+    }
+
+    /// Whether it turns at once at a waypoint, so that the new attitude holds for the whole step.
+    pub fn turns_at_once(&self) -> bool {
+        self.route.as_ref().is_some_and(Route::turns_at_once)
     }
 
     /// Goes on by a step.
     pub fn step(&mut self, ground: &SceneGround, dt_s: f64) {
         let from_m = self.position_m;
-        if let Some(route) = self.route.as_mut().filter(|route| !route.is_over()) {
-            let leg = route.leg;
-            let plan = route.advance(dt_s);
+        if self.drives()
+            && let Some(route) = self.route.as_mut()
+        {
+            let (_, before) = route.place();
+            route.advance(dt_s);
+            let (plan, facing) = route.place();
             (self.position_m.x, self.position_m.z) = (plan.x, plan.y);
-            if route.leg != leg {
-                self.attitude = route.facing();
+            if self.stand.is_some() || facing != before {
+                self.attitude = stance::upright(facing);
             }
+            self.settle(ground);
         }
-        self.settle(ground);
         self.velocity_mps = (self.position_m - from_m) / dt_s;
     }
 
-    /// Takes its height over the ground.
+    /// Takes its place on the ground.
     pub fn settle(&mut self, ground: &SceneGround) {
+        if let Some(stand) = &self.stand {
+            let pose = match self.height {
+                Height::Msl(metres) => Some(stance::level(stand, &self.pose(), metres)),
+                Height::OverGround(metres) => stance::on_ground(stand, &self.pose(), ground, metres),
+            };
+            if let Some(pose) = pose {
+                (self.position_m, self.attitude) = (pose.position_m, pose.attitude);
+            }
+            return;
+        }
         self.position_m.y = match self.height {
             Height::Msl(metres) => metres,
             Height::OverGround(metres) => ground
@@ -176,81 +275,53 @@ impl TargetState {
     /// Puts it elsewhere, standing: a route ends there.
     pub fn reposition(&mut self, position_m: DVec3, attitude: DQuat) {
         (self.position_m, self.attitude, self.velocity_mps) = (position_m, attitude, DVec3::ZERO);
-        (self.height, self.route) = (Height::Msl(position_m.y), None);
+        (self.height, self.route, self.stand) = (Height::Msl(position_m.y), None, None);
         self.jumps = self.jumps.wrapping_add(1);
+    }
+
+    /// Does what its column does when another of it was struck; `number` tells left from right.
+    pub fn react(&mut self, number: u64) {
+        let Some(Column { reaction, .. }) = self.column.take() else { return };
+        match (reaction, &self.route) {
+            (Reaction::Scatter, Some(route)) if self.drives() => {
+                let ahead = stance::facing(self.attitude);
+                let aside = if number.is_multiple_of(2) { ahead.perp() } else { -ahead.perp() };
+                let from = DVec2::new(self.position_m.x, self.position_m.z);
+                let near = from + ahead * SCATTER_AHEAD_M;
+                let scattered = route.elsewhere(vec![from, near, near + (ahead + aside) * SCATTER_ASIDE_M]);
+                // Beyond a world's bounds there is nowhere to go: it stops.
+                match scattered {
+                    Ok(route) => self.route = Some(route),
+                    Err(_) => self.halted = true,
+                }
+            }
+            (Reaction::DriveOn, _) => {}
+            _ => self.halted = true,
+        }
     }
 }
 
-impl Route {
-    fn new(start: &TargetStart) -> Result<Self, Refused> {
-        let mut waypoints_m = Vec::with_capacity(start.route_m.len() + 2);
-        waypoints_m.push(start.plan_m);
-        waypoints_m.extend_from_slice(&start.route_m);
-        if start.loops {
-            waypoints_m.push(start.plan_m);
+impl TargetStart {
+    fn route(&self, turn_radps: Option<f64>, most_mps: f64) -> Result<Route, Refused> {
+        let mut waypoints_m = Vec::with_capacity(self.route_m.len() + 2);
+        waypoints_m.push(self.plan_m);
+        waypoints_m.extend_from_slice(&self.route_m);
+        if self.loops {
+            waypoints_m.push(self.plan_m);
         }
-        let route = Self { waypoints_m, speed_mps: start.speed_mps, loops: start.loops, leg: 0, along_m: 0.0 };
-        route.check()?;
-        Ok(route)
-    }
-
-    fn check(&self) -> Result<(), Refused> {
-        let count = self.waypoints_m.len();
-        if !(2..=MOST_WAYPOINTS).contains(&count) {
-            return Err(Refused::new(format_args!(
-                "target.route_m: expected 1..{MOST_WAYPOINTS} waypoints, found {count}"
-            )));
-        }
-        for at in &self.waypoints_m {
-            place("target.route_m", DVec3::new(at.x, 0.0, at.y))?;
-        }
-        if let Some(leg) = self.waypoints_m.windows(2).position(|leg| leg[0].distance(leg[1]) < SHORTEST_LEG_M) {
-            return Err(Refused::new(format_args!(
-                "target.route_m: expected legs of at least {SHORTEST_LEG_M} m, found leg {leg} shorter"
-            )));
-        }
-        if !(self.speed_mps >= 0.0 && self.speed_mps <= MAX_SPEED_MPS) {
+        if self.speed_mps > most_mps {
             let found = self.speed_mps;
             return Err(Refused::new(format_args!(
-                "target.speed_mps: expected 0..={MAX_SPEED_MPS} m/s, found {found}"
+                "target.speed_mps: expected at most {most_mps} of its kind, found {found}"
             )));
         }
-        let leg = self.leg as usize;
-        let most_m = if leg + 1 < count { self.waypoints_m[leg].distance(self.waypoints_m[leg + 1]) } else { 0.0 };
-        if leg >= count || !(0.0..=most_m).contains(&self.along_m) || (self.is_over() && self.loops) {
-            return Err(Refused::new(format_args!("target.route_m: expected a leg below {count}, found {}", self.leg)));
+        if !(0.0..=MOST_AHEAD_S).contains(&self.ahead_s) {
+            return Err(Refused::new(format_args!(
+                "target.ahead_s: expected 0..={MOST_AHEAD_S}, found {}",
+                self.ahead_s
+            )));
         }
-        Ok(())
-    }
-
-    /// Whether it stands at the last waypoint.
-    fn is_over(&self) -> bool {
-        self.leg as usize + 1 >= self.waypoints_m.len()
-    }
-
-    fn advance(&mut self, dt_s: f64) -> DVec2 {
-        let mut way_m = self.speed_mps * dt_s;
-        while !self.is_over() {
-            let (from, to) = (self.waypoints_m[self.leg as usize], self.waypoints_m[self.leg as usize + 1]);
-            let length_m = from.distance(to);
-            if self.along_m + way_m < length_m {
-                self.along_m += way_m;
-                return from + (to - from) * (self.along_m / length_m);
-            }
-            way_m -= length_m - self.along_m;
-            (self.along_m, self.leg) = (0.0, self.leg + 1);
-            if self.is_over() && self.loops {
-                self.leg = 0;
-            }
-        }
-        self.waypoints_m[self.leg as usize]
-    }
-
-    /// Along the leg; along the last one at its end.
-    fn facing(&self) -> DQuat {
-        let leg = (self.leg as usize).min(self.waypoints_m.len() - 2);
-        let way = self.waypoints_m[leg + 1] - self.waypoints_m[leg];
-        DQuat::from_rotation_y(-way.x.atan2(-way.y))
+        Route::new(waypoints_m, self.speed_mps, turn_radps, self.loops)
     }
 }
 
@@ -261,7 +332,7 @@ mod tests {
     fn driving(loops: bool) -> TargetState {
         let route_m = vec![DVec2::new(100.0, 0.0), DVec2::new(100.0, 50.0)];
         let start = TargetStart { route_m, speed_mps: 10.0, loops, ..TargetStart::standing("tank", DVec2::ZERO) };
-        TargetState::new(&start, 0).unwrap()
+        TargetState::new(&start, 0, None).unwrap()
     }
 
     #[test]
@@ -300,7 +371,7 @@ mod tests {
 
     #[test]
     fn routes_that_are_none_are_refused() {
-        let refused = |start: TargetStart| TargetState::new(&start, 0).unwrap_err().to_string();
+        let refused = |start: TargetStart| TargetState::new(&start, 0, None).unwrap_err().to_string();
         let good = TargetStart::standing("tank", DVec2::ZERO);
         let with = |route_m: Vec<DVec2>, speed_mps| TargetStart { route_m, speed_mps, ..good.clone() };
         assert!(refused(with(vec![DVec2::ZERO], 1.0)).contains("expected legs"));

@@ -97,6 +97,28 @@ impl TargetGrid {
         }
     }
 
+    /// Visits the targets that may come within a distance of a point in plan, perhaps more than once.
+    pub fn around(&self, x_m: f64, z_m: f64, reach_m: f64, mut visit: impl FnMut(usize)) {
+        if self.targets == 0 || !(x_m.is_finite() && z_m.is_finite() && reach_m.is_finite()) {
+            return;
+        }
+        for level in (0..LEVELS).filter(|level| self.levels & (1 << level) != 0) {
+            let place = |at: f64| (at / edge_m(level)).floor() as i64;
+            let (columns, rows) =
+                (place(x_m - reach_m)..=place(x_m + reach_m), place(z_m - reach_m)..=place(z_m + reach_m));
+            let cells = (columns.end() - columns.start() + 1).saturating_mul(rows.end() - rows.start() + 1);
+            if cells > i64::from(self.targets).max(16) {
+                (0..self.targets as usize).for_each(&mut visit);
+                return;
+            }
+            for column in columns {
+                for row in rows.clone() {
+                    self.in_cell(cell(level, column, row), &mut visit);
+                }
+            }
+        }
+    }
+
     /// Visits the targets that a path may come near.
     pub fn near(&self, path: &StepPath, mut visit: impl FnMut(usize)) {
         if self.targets == 0 || !path.is_sound() {

@@ -10,6 +10,7 @@ use super::target::TargetState;
 use super::{Freeze, Roster, Scene};
 use crate::aircraft::Condition;
 use crate::snapshot::{Flags, Mode, Snapshot, StableId, turned};
+use crate::weapons::Damage;
 use glam::{DQuat, DVec3};
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -44,6 +45,10 @@ pub struct EntityView {
     pub condition: Condition,
     /// Hits taken so far.
     pub hits: u32,
+    /// What is left of a target.
+    pub damage: Damage,
+    /// Whether it shows a light: a destroyed target that burns, a motor, a tracer.
+    pub burning: bool,
     /// Counts jumps, across which nothing may be interpolated.
     pub jumps: u32,
 }
@@ -74,6 +79,7 @@ impl EntityView {
     pub(crate) fn words(&self) -> [u64; 13] {
         let (p, q, v) = (self.position_m, self.attitude, self.velocity_mps);
         let rest = u64::from(self.of) | (self.kind as u64) << 32 | (self.condition as u64) << 40;
+        let rest = rest | (self.damage as u64) << 48 | u64::from(self.burning) << 56;
         let counts = u64::from(self.hits) | u64::from(self.jumps) << 32;
         let f = f64::to_bits;
         [self.id.0, rest, counts, f(p.x), f(p.y), f(p.z), f(q.x), f(q.y), f(q.z), f(q.w), f(v.x), f(v.y), f(v.z)]
@@ -138,6 +144,7 @@ impl Scene {
             bodies: self.listed(&self.views.bodies, &self.bodies, Self::body_view),
             projectiles: self.listed(&self.views.shells, &self.shells, Self::shell_view),
             targets: self.listed(&self.views.targets, &self.targets, Self::target_view),
+            weapons: self.page.clone(),
             events: self.recent_events(),
             events_counted: self.log.counted,
             events_chain: self.log.chain,
@@ -175,6 +182,8 @@ impl Scene {
             velocity_mps: at.velocity_mps,
             condition: if body.ended.is_some() { Condition::Crashed } else { Condition::Flying },
             hits: 0,
+            damage: Damage::Intact,
+            burning: false,
             jumps: body.jumps,
         }
     }
@@ -192,6 +201,11 @@ impl Scene {
             velocity_mps,
             condition: Condition::Flying,
             hits: 0,
+            damage: Damage::Intact,
+            burning: shell.load.is_some_and(|load| {
+                let weapon = &self.catalogue.weapons[load.weapon as usize].thing;
+                weapon.is_tracer(shell.round) || weapon.burns_at(shell.age_s)
+            }),
             jumps: shell.jumps,
         }
     }
@@ -206,6 +220,9 @@ impl Scene {
             velocity_mps: target.velocity_mps,
             condition: Condition::OnGround,
             hits: target.hits,
+            damage: target.state(),
+            burning: target.state() == Damage::Destroyed
+                && target.kind.is_some_and(|kind| self.catalogue.kinds[kind as usize].thing.burns),
             jumps: target.jumps,
         }
     }
