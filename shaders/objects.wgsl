@@ -26,6 +26,8 @@ struct Corner {
     @location(7) scale: f32,
     @location(8) rotation: vec4<f32>,
     @location(9) instance_seed: u32,
+    // 1, or less where it is burnt.
+    @location(10) shade: f32,
 }
 
 struct Surface {
@@ -84,7 +86,7 @@ fn objects_vertex(corner: Corner) -> Surface {
     let ground = 0.15 * (frame.sun_irradiance * max(frame.sun_direction.y, 0.0) * light.b + frame.sky_irradiance * light.a);
     var surface: Surface;
     surface.clip = frame.clip_from_relative * vec4<f32>(relative_m, 1.0);
-    surface.albedo = corner.colour.rgb * corner.colour.rgb;
+    surface.albedo = corner.colour.rgb * corner.colour.rgb * corner.shade;
     // The foot of a wall, below storey 0, sees less of the sky: by its neighbours.
     let open_sky = select(1.0, 0.72, corner.facade.y < 0.0);
     surface.irradiance =

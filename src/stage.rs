@@ -7,12 +7,14 @@ pub mod actors;
 pub mod cameras;
 pub mod effects;
 
-use crate::hud::{self, Anchor, HudInput, Instruments};
+use crate::hud::{self, Anchor, HudInput, Instruments, Sight, Store, WeaponPage};
 use crate::scenery::{self, Heavens, Scenery};
 use actors::Cast;
 use cameras::{Camera, Cameras};
 use glam::{DQuat, DVec3, Vec2};
 use sim::input::Head;
+use sim::scene;
+use sim::weapons::NoSolution;
 use sim::{HeightAt, Scene, Snapshot, UtcTime};
 use std::sync::Arc;
 use terrain::Area;
@@ -123,6 +125,29 @@ pub struct Seen {
     pub camera: Camera,
 }
 
+fn stores(page: &scene::WeaponPage) -> Vec<Store<'_>> {
+    page.rows.iter().map(|row| Store { name: &row.label, left: row.left }).collect()
+}
+
+/// The prediction of a page in the axes of a view: a gun's pipper at its range, else the point of impact.
+fn sight<'a>(page: &scene::WeaponPage, view: &View) -> Sight<'a> {
+    let in_view_m = |at_m: DVec3| (view.attitude.inverse() * (at_m - view.eye_m)).to_array();
+    match &page.ccip {
+        Ok(found) => match found.pipper {
+            Some(pipper) => Sight::Impact { in_view_m: in_view_m(pipper.point_m), time_s: pipper.time_s, safe: true },
+            None => Sight::Impact {
+                in_view_m: in_view_m(found.point_m),
+                time_s: found.time_s,
+                safe: found.safe && found.armed,
+            },
+        },
+        Err(NoSolution::NoWeapon) => Sight::Off,
+        Err(NoSolution::NothingWithin(_)) => Sight::None("no impact in reach"),
+        Err(NoSolution::LeavesWorld) => Sight::None("no ground there"),
+        Err(NoSolution::Stiff) => Sight::None("no solution"),
+    }
+}
+
 /// The display's brightness by the sun's height: 1 by day, dim at night.
 fn brightness(heavens: &Heavens) -> f64 {
     const NIGHT: f64 = 0.35;
@@ -146,6 +171,14 @@ pub fn hud(world: &World, snapshot: &Snapshot, seen: &Seen, heavens: &Heavens, c
         status.push(seen.camera.name());
     }
     status.extend_from_slice(captions.status);
+    let stores = snapshot.weapons.as_ref().map(|page| stores(page)).unwrap_or_default();
+    let weapons = snapshot.weapons.as_ref().map(|page| WeaponPage {
+        stores: &stores,
+        selected: page.selected,
+        armed: page.master,
+        release: "",
+        sight: sight(page, view),
+    });
     let input = HudInput {
         speed_mps: aircraft.airspeed_mps,
         altitude_m: aircraft.position_m.y,
@@ -164,7 +197,7 @@ pub fn hud(world: &World, snapshot: &Snapshot, seen: &Seen, heavens: &Heavens, c
         viewport_px: (view.size_px[0], view.size_px[1]),
         fov_y_rad: (view.top.atan() - view.bottom.atan()),
         instruments: Instruments::default(),
-        weapons: None,
+        weapons,
         brightness: brightness(heavens),
         looking_ahead: seen.ahead,
     };

@@ -1,33 +1,56 @@
 //! From the entities of a simulated scene to the shapes that show them.
 //!
-//! Which shape stands for an entity is decided once a scene, by the name in its catalogue ([`Cast`]). A body's or the own
-//! aircraft's position is its centre of gravity, a shape's foot is on the ground under its wheels: the two are told apart
-//! here. Body axes (x forward, y right, z down) become a shape's (x right, y up, z backward).
+//! Which shape stands for an entity is decided once a scene, by what its catalogue says of it ([`Cast`]). A body's or the
+//! own aircraft's position is its centre of gravity, a target's the middle of what shells strike; a shape's foot is on the
+//! ground under its wheels: they are told apart here. Body axes (x forward, y right, z down) become a shape's (x right, y
+//! up, z backward).
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use sim::Snapshot;
 use sim::scene::{Catalogue, EntityView};
+use sim::weapons::{Damage, WeaponKind};
 use visual::models::things::{MODELS, Model};
 use visual::passes::objects::ObjectInstance;
 
 /// Height of a light aircraft's centre of gravity over its wheels' contact, metres.
 const AIRCRAFT_CG_M: f64 = 1.25;
 
+/// Share of its paint's brightness that a damaged and a destroyed target have left: soot.
+const DAMAGED_SHADE: f32 = 0.6;
+const DESTROYED_SHADE: f32 = 0.16;
+
+/// A shape, and how far its foot is under the position of what it shows, metres.
+type Part = Option<(Model, f64)>;
+
 /// Which shape each entry of a catalogue is drawn with; `None` is not drawn as a shape.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cast {
-    bodies: Vec<Option<Model>>,
-    projectiles: Vec<Option<Model>>,
-    targets: Vec<Option<Model>>,
+    bodies: Vec<Part>,
+    projectiles: Vec<Part>,
+    targets: Vec<Part>,
 }
 
 impl Cast {
-    /// By the names in a catalogue.
+    /// Of a catalogue.
     pub fn of(catalogue: &Catalogue) -> Self {
+        let body = |name: &str| {
+            let model = model(name).unwrap_or(Model::Aircraft);
+            Some((model, if model == Model::Aircraft { AIRCRAFT_CG_M } else { 0.0 }))
+        };
+        let projectile = |name: &str| match catalogue.weapon_of_projectile(name)?.kind {
+            WeaponKind::Bomb => Some((Model::Bomb, 0.0)),
+            WeaponKind::Rocket => Some((Model::Rocket, 0.0)),
+            WeaponKind::Gun => None,
+        };
+        let target = |(place, name): (usize, &str)| {
+            let kind = catalogue.kind_of_shape(place as u32);
+            let named = kind.map_or(name, |kind| kind.model.as_str());
+            Some((model(named).unwrap_or(Model::Truck), kind.map_or(0.0, |kind| kind.stand.below_m)))
+        };
         Self {
-            bodies: catalogue.model_names().map(|name| Some(model(name).unwrap_or(Model::Aircraft))).collect(),
-            projectiles: catalogue.projectile_names().map(model).collect(),
-            targets: catalogue.shape_names().map(|name| Some(model(name).unwrap_or(Model::Truck))).collect(),
+            bodies: catalogue.model_names().map(body).collect(),
+            projectiles: catalogue.projectile_names().map(projectile).collect(),
+            targets: catalogue.shape_names().enumerate().map(target).collect(),
         }
     }
 
@@ -37,35 +60,33 @@ impl Cast {
             let own = &snapshot.aircraft;
             let attitude = sim::frame::view_attitude(own.attitude);
             let position_m = own.position_m - attitude * DVec3::Y * AIRCRAFT_CG_M;
-            ObjectInstance { class: Model::Aircraft, position_m, attitude, scale: 1.0 }
+            ObjectInstance { class: Model::Aircraft, position_m, attitude, scale: 1.0, shade: 1.0 }
         });
-        let body = |one: &EntityView, class: Model| {
-            let attitude = sim::frame::view_attitude(one.attitude);
-            let foot_m = if class == Model::Aircraft { AIRCRAFT_CG_M } else { 0.0 };
-            let position_m = one.position_m - attitude * DVec3::Y * foot_m;
-            ObjectInstance { class, position_m, attitude, scale: 1.0 }
-        };
-        let target = |one: &EntityView, class: Model| ObjectInstance {
-            class,
-            position_m: one.position_m,
-            attitude: one.attitude,
-            scale: 1.0,
-        };
+        let in_body_axes = |one: &EntityView| sim::frame::view_attitude(one.attitude);
         own.into_iter()
-            .chain(cast(&snapshot.bodies, &self.bodies, body))
-            .chain(cast(&snapshot.projectiles, &self.projectiles, body))
-            .chain(cast(&snapshot.targets, &self.targets, target))
+            .chain(cast(&snapshot.bodies, &self.bodies, in_body_axes))
+            .chain(cast(&snapshot.projectiles, &self.projectiles, in_body_axes))
+            .chain(cast(&snapshot.targets, &self.targets, |one| one.attitude))
             .collect()
     }
 }
 
 fn cast<'a>(
     entities: &'a [EntityView],
-    models: &'a [Option<Model>],
-    place: impl Fn(&EntityView, Model) -> ObjectInstance + 'a,
+    parts: &'a [Part],
+    attitude: impl Fn(&EntityView) -> DQuat + 'a,
 ) -> impl Iterator<Item = ObjectInstance> + 'a {
-    let of = |one: &EntityView| models.get(one.of as usize).copied().flatten();
-    entities.iter().filter_map(move |one| of(one).map(|model| place(one, model)))
+    entities.iter().filter_map(move |one| {
+        let (class, below_m) = parts.get(one.of as usize).copied().flatten()?;
+        let attitude = attitude(one);
+        let position_m = one.position_m - attitude * DVec3::Y * below_m;
+        let shade = match one.damage {
+            Damage::Intact => 1.0,
+            Damage::Damaged => DAMAGED_SHADE,
+            Damage::Destroyed => DESTROYED_SHADE,
+        };
+        Some(ObjectInstance { class, position_m, attitude, scale: 1.0, shade })
+    })
 }
 
 /// The shape whose name a catalogue's name is or begins with: `truck`, `truck_2`, `aircraft`.
@@ -79,7 +100,6 @@ fn model(name: &str) -> Option<Model> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DQuat;
     use sim::UtcTime;
     use sim::aircraft::AircraftState;
     use sim::ballistics::shape::Shape;
@@ -106,6 +126,20 @@ mod tests {
     }
 
     #[test]
+    fn every_embedded_target_and_weapon_has_its_shape() {
+        let mut catalogue = Catalogue::new();
+        sim::weapons::builtin::add_all(&mut catalogue).unwrap();
+        let cast = Cast::of(&catalogue);
+        for (place, name) in catalogue.shape_names().enumerate() {
+            let kind = catalogue.kind_of_shape(place as u32).unwrap();
+            let (drawn, below_m) = cast.targets[place].unwrap();
+            assert_eq!((drawn.name(), below_m), (kind.model.as_str(), kind.stand.below_m), "{name}");
+        }
+        let shown: Vec<bool> = cast.projectiles.iter().map(Option::is_some).collect();
+        assert_eq!(shown.iter().filter(|shown| **shown).count(), 4, "bombs and rockets, not rounds");
+    }
+
+    #[test]
     fn targets_stand_where_they_are_and_strange_numbers_of_a_catalogue_show_nothing() {
         let mut catalogue = Catalogue::new();
         catalogue.add_shape("tank", Shape::sphere(1.0).unwrap()).unwrap();
@@ -119,6 +153,8 @@ mod tests {
             velocity_mps: DVec3::ZERO,
             condition: sim::Condition::OnGround,
             hits: 0,
+            damage: Damage::Destroyed,
+            burning: true,
             jumps: 0,
         };
         let scene = sim::Scene::new(AircraftState::level(DVec3::Y * 900.0, 0.0, 60.0), UtcTime { unix_ns: 0 });
@@ -127,5 +163,6 @@ mod tests {
         let shown = cast.shapes(&snapshot, true);
         assert_eq!(shown.len(), 1);
         assert_eq!((shown[0].class, shown[0].position_m), (Model::Tank, DVec3::new(1.0, 2.0, 3.0)));
+        assert_eq!(shown[0].shade, DESTROYED_SHADE);
     }
 }

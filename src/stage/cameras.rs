@@ -249,6 +249,8 @@ mod tests {
             velocity_mps: DVec3::new(0.0, -100.0, 0.0),
             condition: sim::Condition::Flying,
             hits: 0,
+            damage: sim::weapons::Damage::Intact,
+            burning: false,
             jumps: 0,
         };
         let old = weapon(3, DVec3::new(0.0, 1_500.0, 0.0));

@@ -5,6 +5,8 @@
 
 use sim::Snapshot;
 use sim::scene::{Event, Happening};
+use sim::snapshot::StableId;
+use std::collections::BTreeMap;
 use visual::particles::{Emitter, EmitterKind};
 
 /// Longest that anything is remembered, scene seconds: an explosion's smoke.
@@ -13,9 +15,16 @@ const KEPT_S: f64 = 9.0;
 const MOST_KEPT: usize = 512;
 /// Radius of a tracer's glow, metres.
 const TRACER_M: f32 = 0.08;
-/// Radius of the dust of a strike on the ground, and of the burst of one on a thing, metres.
-const DUST_M: f32 = 2.0;
-const BURST_M: f32 = 3.0;
+/// Radius of the dust of a round on the ground, and of the spark of one on a thing, metres.
+const DUST_M: f32 = 0.8;
+const SPARK_M: f32 = 0.5;
+/// Radius of a crash's burst, metres.
+const CRASH_M: f32 = 9.0;
+/// Radius of the fireball of a kilogram of TNT, metres; it grows with the cube root of the charge (B. Hopkinson 1915). A
+/// hot ball of gases of 1.5 to 2 m is common for bare charges of 1 kg (from memory).
+const FIREBALL_M: f64 = 1.75;
+/// Radius of the smoke and fire of a wreck, metres.
+const WRECK_M: f32 = 1.6;
 
 /// See the module.
 #[derive(Debug, Default)]
@@ -23,6 +32,8 @@ pub struct Effects {
     /// Events taken so far: the number of the next.
     taken: u64,
     kept: Vec<Emitter>,
+    /// Since when each wreck burns, scene seconds.
+    burning: BTreeMap<StableId, f64>,
 }
 
 impl Effects {
@@ -39,24 +50,47 @@ impl Effects {
         self.kept.retain(|one| one.born_s <= now_s + 1.0 && one.born_s >= now_s - KEPT_S);
         let over = self.kept.len().saturating_sub(MOST_KEPT);
         self.kept.drain(..over);
-        let tracers = snapshot.projectiles.iter().map(|shell| Emitter {
+        let lit = snapshot.projectiles.iter().filter(|one| one.burning);
+        let tracers = lit.map(|shell| Emitter {
             kind: EmitterKind::Tracer,
             born_s: now_s,
             position_m: shell.position_m,
             velocity_mps: shell.velocity_mps,
             size_m: TRACER_M,
         });
-        self.kept.iter().copied().chain(tracers).collect()
+        let mut all: Vec<Emitter> = self.kept.iter().copied().chain(tracers).collect();
+        self.wrecks(snapshot, &mut all);
+        all
+    }
+
+    /// Fire and smoke of what was destroyed and burns.
+    fn wrecks(&mut self, snapshot: &Snapshot, all: &mut Vec<Emitter>) {
+        let now_s = snapshot.time_s;
+        let burning = || snapshot.targets.iter().filter(|target| target.burning);
+        self.burning.retain(|id, since_s| *since_s <= now_s && burning().any(|target| target.id == *id));
+        for target in burning() {
+            let born_s = *self.burning.entry(target.id).or_insert(now_s);
+            for kind in [EmitterKind::Fire, EmitterKind::Smoke] {
+                let position_m = target.position_m;
+                all.push(Emitter { kind, born_s, position_m, velocity_mps: glam::DVec3::ZERO, size_m: WRECK_M });
+            }
+        }
     }
 }
 
 fn begun(event: &Event) -> Option<Emitter> {
     let (kind, position_m, size_m) = match &event.what {
         Happening::Impact(strike) if strike.target.is_some() || strike.object.is_some() => {
-            (EmitterKind::Explosion, strike.point_m, BURST_M)
+            (EmitterKind::Explosion, strike.point_m, SPARK_M)
         }
         Happening::Impact(strike) => (EmitterKind::Dust, strike.point_m, DUST_M),
-        Happening::Crash { point_m, .. } => (EmitterKind::Explosion, *point_m, 3.0 * BURST_M),
+        Happening::Burst { point_m, tnt_kg, buried, .. } => {
+            let fireball_m = (FIREBALL_M * tnt_kg.max(0.0).cbrt()) as f32;
+            // A small burst in the ground is earth thrown up.
+            let kind = if *buried && *tnt_kg < 0.5 { EmitterKind::Dust } else { EmitterKind::Explosion };
+            (kind, *point_m, fireball_m.max(SPARK_M))
+        }
+        Happening::Crash { point_m, .. } => (EmitterKind::Explosion, *point_m, CRASH_M),
         _ => return None,
     };
     Some(Emitter { kind, born_s: event.time_s, position_m, velocity_mps: glam::DVec3::ZERO, size_m })
@@ -69,7 +103,6 @@ mod tests {
     use sim::UtcTime;
     use sim::aircraft::AircraftState;
     use sim::scene::EndReason;
-    use sim::snapshot::StableId;
 
     #[test]
     fn a_crash_smokes_longer_than_its_event_is_told_and_a_new_scene_forgets_it() {

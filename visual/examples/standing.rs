@@ -147,6 +147,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             position_m: on(-700.0 + 70.0 * number as f64, 2_000.0, 0.0),
             attitude: DQuat::from_rotation_y(0.7),
             scale: if class.placed().is_some() { 1.0 } else { 30.0 },
+            shade: 1.0,
         })
         .collect();
     objects.set_dynamic(&row);

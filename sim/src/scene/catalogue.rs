@@ -126,6 +126,11 @@ impl Catalogue {
         place("shape", &self.shapes, name)
     }
 
+    /// The weapon whose rounds are this projectile.
+    pub fn weapon_of_projectile(&self, name: &str) -> Option<&Weapon> {
+        self.weapons.iter().find(|named| named.name == name).map(|named| &*named.thing)
+    }
+
     /// Names of the models, in order.
     pub fn model_names(&self) -> impl Iterator<Item = &str> {
         self.models.iter().map(|named| named.name.as_str())

@@ -10,8 +10,8 @@
 use super::arms::Load;
 use super::codec::coded;
 use super::event::{Happening, Strike};
-use super::target::TargetState;
 use super::shell::Shell;
+use super::target::TargetState;
 use super::{Refused, Scene, SceneGround, found, place};
 use crate::ballistics::targets::{Pose, Target};
 use crate::random::Stream;
@@ -51,22 +51,7 @@ pub(super) struct Ended {
     scored: Option<StableId>,
     miss: Option<(f64, u32)>,
 }
-coded!(Ended {
-    time_s,
-    id,
-    owner,
-    round,
-    load,
-    age_s,
-    point_m,
-    target,
-    object,
-    in_air,
-    rested,
-    kills,
-    scored,
-    miss
-});
+coded!(Ended { time_s, id, owner, round, load, age_s, point_m, target, object, in_air, rested, kills, scored, miss });
 
 impl Ended {
     /// One that burst in the air.

@@ -1,9 +1,9 @@
-//! What flies: a light aircraft.
+//! What flies: a light aircraft, a jet, and what falls from one.
 //!
 //! Frame: see [`super`].
 
 use super::mesh::{Mesh, Paint};
-use super::parts::{DARK, GLASS, RED, STEEL, WHITE, body, cuboid};
+use super::parts::{DARK, GLASS, OLIVE, RED, SHEET, STEEL, WHITE, body, cuboid};
 use super::vehicles::wheel;
 use glam::Vec3;
 
@@ -77,4 +77,82 @@ pub(super) fn aircraft(mesh: &mut Mesh) {
             STEEL,
         );
     }
+}
+
+/// A small jet with a swept wing, 15 x 10 x 4 m, on its wheels.
+pub(super) fn jet(mesh: &mut Mesh) {
+    let skin = SHEET.shaded(0.9);
+    body(
+        mesh,
+        &[
+            [-7.5, 1.85, 0.04, 0.04],
+            [-6.2, 1.9, 0.32, 0.3],
+            [-4.2, 1.95, 0.62, 0.6],
+            [-1.0, 1.9, 0.78, 0.78],
+            [3.5, 1.9, 0.78, 0.76],
+            [6.6, 1.95, 0.5, 0.5],
+        ],
+        12,
+        skin,
+    );
+    mesh.loft(&[nozzle(6.6, 0.46), nozzle(7.0, 0.4)], DARK);
+    body(
+        mesh,
+        &[[-4.9, 2.35, 0.12, 0.04], [-4.2, 2.6, 0.36, 0.3], [-2.8, 2.62, 0.34, 0.26], [-1.6, 2.5, 0.12, 0.06]],
+        8,
+        GLASS,
+    );
+    wing(mesh, [0.5, 1.85, -1.6, 3.6], [5.0, 1.8, 2.2, 3.6], 0.24, skin);
+    wing(mesh, [0.4, 1.85, 4.4, 6.8], [2.9, 1.85, 6.0, 7.2], 0.14, skin);
+    let fin = |x: f32| [(3.4, 2.5), (6.9, 2.4), (7.4, 4.0), (6.2, 4.0)].map(|(z, y)| Vec3::new(x, y, z)).to_vec();
+    mesh.loft(&[fin(0.07), fin(-0.07)], skin.shaded(0.95));
+    wheel(mesh, 0.0, -4.4, 0.28, 0.16);
+    for x in [-1.3_f32, 1.3] {
+        wheel(mesh, x, 1.2, 0.36, 0.22);
+        cuboid(mesh, [x - 0.06, 0.4, 1.12], [x + 0.06, 1.7, 1.28], STEEL);
+    }
+    cuboid(mesh, [-0.05, 0.3, -4.45], [0.05, 1.4, -4.35], STEEL);
+}
+
+fn nozzle(z: f32, radius: f32) -> Vec<Vec3> {
+    (0..12)
+        .map(|corner| {
+            let (sin, cos) = (std::f32::consts::TAU * (corner as f32 + 0.5) / 12.0).sin_cos();
+            Vec3::new(radius * cos, 1.95 + radius * sin, z)
+        })
+        .collect()
+}
+
+/// A bomb of 2.2 m about its own middle, nose along -z.
+pub(super) fn bomb(mesh: &mut Mesh) {
+    body(
+        mesh,
+        &[
+            [-1.1, 0.0, 0.02, 0.02],
+            [-0.8, 0.0, 0.1, 0.1],
+            [-0.3, 0.0, 0.137, 0.137],
+            [0.2, 0.0, 0.13, 0.13],
+            [0.8, 0.0, 0.06, 0.06],
+            [1.1, 0.0, 0.05, 0.05],
+        ],
+        10,
+        OLIVE,
+    );
+    fins(mesh, 0.7, 1.1, 0.19);
+}
+
+/// An unguided rocket of 1.4 m about its own middle, nose along -z.
+pub(super) fn rocket(mesh: &mut Mesh) {
+    body(
+        mesh,
+        &[[-0.7, 0.0, 0.005, 0.005], [-0.5, 0.0, 0.03, 0.03], [-0.3, 0.0, 0.035, 0.035], [0.7, 0.0, 0.035, 0.035]],
+        8,
+        OLIVE.shaded(1.2),
+    );
+    fins(mesh, 0.55, 0.7, 0.1);
+}
+
+fn fins(mesh: &mut Mesh, front: f32, back: f32, reach: f32) {
+    cuboid(mesh, [-reach, -0.008, front], [reach, 0.008, back], OLIVE.shaded(0.8));
+    cuboid(mesh, [-0.008, -reach, front], [0.008, reach, back], OLIVE.shaded(0.8));
 }

@@ -1,4 +1,4 @@
-//! Things that are placed, masts and power line towers, each from code: a detailed shape and a coarse one.
+//! Every thing that is drawn as a shape, each from code: a detailed shape and, of what is placed, one of boxes.
 //!
 //! Frame: see [`super`]. Sizes are those of [`terrain::features::shape`], whose boxes shells meet; sources stand there.
 //! Masts and towers are made 1 m high and scaled to their height.
@@ -29,10 +29,16 @@ pub enum Model {
     Chimney,
     WindTurbine,
     PowerTower,
+    Apc,
+    Radar,
+    Bunker,
+    ParkedAircraft,
+    Bomb,
+    Rocket,
 }
 
 /// Every model, in the order of their numbers.
-pub const MODELS: [Model; 15] = [
+pub const MODELS: [Model; 21] = [
     Model::Hangar,
     Model::ControlTower,
     Model::Terminal,
@@ -48,6 +54,12 @@ pub const MODELS: [Model; 15] = [
     Model::Chimney,
     Model::WindTurbine,
     Model::PowerTower,
+    Model::Apc,
+    Model::Radar,
+    Model::Bunker,
+    Model::ParkedAircraft,
+    Model::Bomb,
+    Model::Rocket,
 ];
 
 impl From<PlacedClass> for Model {
@@ -102,6 +114,12 @@ impl Model {
             Self::Chimney => "chimney",
             Self::WindTurbine => "wind_turbine",
             Self::PowerTower => "power_tower",
+            Self::Apc => "apc",
+            Self::Radar => "radar",
+            Self::Bunker => "bunker",
+            Self::ParkedAircraft => "parked_aircraft",
+            Self::Bomb => "bomb",
+            Self::Rocket => "rocket",
         }
     }
 
@@ -145,6 +163,12 @@ impl Model {
             Self::Chimney => masts::chimney(&mut mesh),
             Self::WindTurbine => masts::wind_turbine(&mut mesh),
             Self::PowerTower => masts::power_tower(&mut mesh),
+            Self::Apc => vehicles::apc(&mut mesh),
+            Self::Radar => vehicles::radar(&mut mesh),
+            Self::Bunker => vehicles::bunker(&mut mesh),
+            Self::ParkedAircraft => aircraft::jet(&mut mesh),
+            Self::Bomb => aircraft::bomb(&mut mesh),
+            Self::Rocket => aircraft::rocket(&mut mesh),
         }
         mesh
     }
@@ -171,6 +195,19 @@ impl Model {
 mod tests {
     use super::*;
 
+    /// Halves of the block that shells strike, from `assets/targets`; of weapons their length and fins.
+    fn target(model: Model) -> Option<Vec3> {
+        match model {
+            Model::Apc => Some(Vec3::new(1.45, 1.1, 3.8)),
+            Model::Radar => Some(Vec3::new(1.5, 2.2, 3.5)),
+            Model::Bunker => Some(Vec3::new(5.0, 2.0, 5.0)),
+            Model::ParkedAircraft => Some(Vec3::new(5.0, 2.0, 7.5)),
+            Model::Bomb => Some(Vec3::new(0.19, 0.19, 1.1)),
+            Model::Rocket => Some(Vec3::new(0.1, 0.1, 0.7)),
+            _ => None,
+        }
+    }
+
     #[test]
     fn shapes_have_their_real_sizes_and_stay_near_the_boxes_that_shells_meet() {
         for model in MODELS {
@@ -180,6 +217,12 @@ mod tests {
                 assert!(mesh.indices.iter().all(|index| (*index as usize) < mesh.vertices.len()));
                 assert!(mesh.indices.len() >= 36 / (1 + level) && mesh.indices.len() < 6_000, "{model:?}");
                 let (low, high) = mesh.bounds_m();
+                if let Some(half_m) = target(model) {
+                    let middle = if matches!(model, Model::Bomb | Model::Rocket) { 0.0 } else { half_m.y };
+                    let off = (high.max(-low) - Vec3::new(half_m.x, half_m.y + middle, half_m.z)).abs();
+                    assert!(off.x < 0.6 && off.y < 0.6 && off.z < 0.6, "{model:?} {low} {high}");
+                    continue;
+                }
                 let Some(class) = model.placed() else {
                     assert!(high.y > 0.9 && high.y < 1.6 && low.y > -0.1, "{model:?} {low} {high}");
                     continue;

@@ -117,6 +117,7 @@ fn thing(index: &ObjectIndex, object: &Object, anchor_post: [i32; 2], from: DVec
         scale,
         rotation,
         seed: hash_of(at) << 8,
+        shade: 1.0,
     };
     Some(Thing { model, instance, at_m: stand.at_m })
 }

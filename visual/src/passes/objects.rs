@@ -52,6 +52,8 @@ pub struct Instance {
     pub rotation: [f32; 4],
     /// 0, or a hash that tells its windows from others'.
     pub seed: u32,
+    /// What its paint's albedo is multiplied with: 1, or less where it is burnt.
+    pub shade: f32,
 }
 
 /// A thing that a scene moves.
@@ -65,6 +67,8 @@ pub struct ObjectInstance {
     pub attitude: DQuat,
     /// 1 for its real size; a mast's is its height in metres.
     pub scale: f64,
+    /// 1, or less where it is burnt.
+    pub shade: f32,
 }
 
 /// What a view's objects are made of.
@@ -174,6 +178,7 @@ impl Objects {
                 && one.attitude.is_finite()
                 && one.attitude.length_squared() > 1e-12
                 && one.scale.is_finite()
+                && one.shade.is_finite()
         };
         self.dynamic.extend(instances.iter().filter(sound).take(MOST_DYNAMIC));
     }
@@ -247,6 +252,7 @@ impl Objects {
                     scale: 1.0,
                     rotation: [0.0, 0.0, 0.0, 1.0],
                     seed: 0,
+                    shade: 1.0,
                 });
                 counts.buildings += drawn as u32;
                 counts.triangles += u64::from(*end) / 3;
@@ -265,6 +271,7 @@ impl Objects {
                 scale: one.scale as f32,
                 rotation: one.attitude.normalize().as_quat().to_array(),
                 seed: 0,
+                shade: one.shade,
             };
             self.show(one.class, instance, one.position_m, size_m, view, &frustum, &mut things);
         }
@@ -426,7 +433,7 @@ fn pipeline(
         immediate_size: 0,
     });
     let vertex = wgpu::vertex_attr_array![0 => Float32x3, 1 => Snorm8x4, 2 => Unorm8x4, 3 => Float32x2, 4 => Uint32];
-    let instance = wgpu::vertex_attr_array![5 => Sint32x2, 6 => Float32x3, 7 => Float32, 8 => Float32x4, 9 => Uint32];
+    let instance = wgpu::vertex_attr_array![5 => Sint32x2, 6 => Float32x3, 7 => Float32, 8 => Float32x4, 9 => Uint32, 10 => Float32];
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("objects"),
         layout: Some(&layout),
