@@ -14,7 +14,7 @@ use cameras::{Camera, Cameras};
 use glam::{DQuat, DVec3, Vec2};
 use sim::input::Head;
 use sim::scene;
-use sim::weapons::NoSolution;
+use sim::weapons::{NoSolution, WeaponKind};
 use sim::{HeightAt, Scene, Snapshot, UtcTime};
 use std::sync::Arc;
 use terrain::Area;
@@ -129,6 +129,17 @@ fn stores(page: &scene::WeaponPage) -> Vec<Store<'_>> {
     page.rows.iter().map(|row| Store { name: &row.label, left: row.left }).collect()
 }
 
+/// How the selected weapon leaves, in words.
+fn release(page: &scene::WeaponPage) -> String {
+    let selected = page.selected.and_then(|selected| page.rows.get(selected));
+    match (selected.map(|row| row.kind), page.ripple) {
+        (None | Some(WeaponKind::Gun), _) => String::new(),
+        (_, 1) => "SINGLE".to_owned(),
+        (_, u32::MAX) => format!("ALL EVERY {} S", scene::RIPPLE_S),
+        (_, ripple) => format!("{ripple} EVERY {} S", scene::RIPPLE_S),
+    }
+}
+
 /// The prediction of a page in the axes of a view: a gun's pipper at its range, else the point of impact.
 fn sight<'a>(page: &scene::WeaponPage, view: &View) -> Sight<'a> {
     let in_view_m = |at_m: DVec3| (view.attitude.inverse() * (at_m - view.eye_m)).to_array();
@@ -172,11 +183,12 @@ pub fn hud(world: &World, snapshot: &Snapshot, seen: &Seen, heavens: &Heavens, c
     }
     status.extend_from_slice(captions.status);
     let stores = snapshot.weapons.as_ref().map(|page| stores(page)).unwrap_or_default();
+    let release = snapshot.weapons.as_ref().map(|page| release(page)).unwrap_or_default();
     let weapons = snapshot.weapons.as_ref().map(|page| WeaponPage {
         stores: &stores,
         selected: page.selected,
         armed: page.master,
-        release: "",
+        release: &release,
         sight: sight(page, view),
     });
     let input = HudInput {

@@ -66,7 +66,7 @@ fn axes_throttle_and_trigger_arrive() {
     let Some(output) = played(events, "2.5") else { return };
     assert!(output.contains("(044f:b10a)"), "{output}");
     assert!(output.contains("roll Some(1.0)"), "{output}");
-    assert!(output.contains("command pause"), "{output}");
+    assert!(output.contains("command trigger"), "{output}");
     // 200 of 255 counted from the far end, the lever's zero: 1 - 201/256 = 0.215.
     assert!(output.contains("throttle Some(0.2148"), "{output}");
     assert!(output.contains("pitch Some(1.0)"), "pulled back is nose up: {output}");

@@ -40,7 +40,7 @@ const NO_EFFECT: Duration = Duration::from_secs(1);
 /// Weight of the last frame in the frame time shown: figures that can be read.
 const SMOOTHING: f64 = 0.1;
 
-const HINT_TRACK: &str = "STICK OR ARROW KEYS: FLY YOURSELF   SPACE PAUSE   H DISPLAY   F12 PICTURE   ESC QUIT";
+const HINT_TRACK: &str = "STICK OR ARROW KEYS: FLY YOURSELF   P PAUSE   C CAMERA   H DISPLAY   F12 PICTURE   ESC QUIT";
 const HINT_PILOT: &str = "PGUP PGDN THRUST   C CAMERA   R RESET   T TRACK   Y SLEW   [ ] HOUR   , . MONTH";
 const HINT_CRASHED: &str = "R RESET   Y SLEW";
 const HINT_SLEW: &str = "ARROWS MOVE AND TURN   PGUP PGDN CLIMB   Y FLY FROM HERE";

@@ -107,8 +107,7 @@ impl Bindings {
         let &(_, command) = self.profile(device)?.buttons.iter().find(|(of, _)| *of == code)?;
         match (command, pressed) {
             (command, true) => Some(command),
-            (Command::Look(_), false) => Some(Command::LookEnd),
-            _ => None,
+            (command, false) => command.ending(),
         }
     }
 
@@ -198,7 +197,8 @@ mod tests {
         bindings.axis(0, 0x30000, -1.0);
         bindings.axis(1, 0x30000, 1.0);
         assert_eq!(bindings.axes().roll, Some(0.0));
-        assert_eq!(bindings.button(1, 0x10120, true), Some(Command::Pause));
-        assert_eq!(bindings.button(1, 0x10120, false), None);
+        assert_eq!(bindings.button(1, 0x10120, true), Some(Command::Trigger));
+        assert_eq!(bindings.button(1, 0x10120, false), Some(Command::TriggerEnd));
+        assert_eq!(bindings.button(1, 0x10122, false), None);
     }
 }

@@ -73,6 +73,16 @@ pub enum Command {
     NextCamera,
     /// Back to the pilot's eye.
     CockpitCamera,
+    /// Lets the trigger do something, or no longer.
+    MasterArm,
+    /// The next weapon.
+    NextWeapon,
+    /// How many bombs or rockets leave at a press of the trigger.
+    NextRipple,
+    /// The trigger is pressed.
+    Trigger,
+    /// The trigger is let go.
+    TriggerEnd,
     /// An hour later.
     TimeForward,
     /// An hour earlier.
@@ -107,6 +117,11 @@ impl fmt::Display for Command {
             Self::Hud => "head-up display",
             Self::NextCamera => "next camera",
             Self::CockpitCamera => "cockpit",
+            Self::MasterArm => "master arm",
+            Self::NextWeapon => "next weapon",
+            Self::NextRipple => "more or fewer in a row",
+            Self::Trigger => "trigger",
+            Self::TriggerEnd => "trigger let go",
             Self::TimeForward => "an hour later",
             Self::TimeBack => "an hour earlier",
             Self::DateForward => "a month later",
@@ -138,6 +153,11 @@ const NAMES: &[(&str, Command)] = &[
     ("hud", Command::Hud),
     ("next_camera", Command::NextCamera),
     ("cockpit_camera", Command::CockpitCamera),
+    ("master_arm", Command::MasterArm),
+    ("next_weapon", Command::NextWeapon),
+    ("next_ripple", Command::NextRipple),
+    ("trigger", Command::Trigger),
+    ("trigger_end", Command::TriggerEnd),
     ("time_forward", Command::TimeForward),
     ("time_back", Command::TimeBack),
     ("date_forward", Command::DateForward),
@@ -155,6 +175,15 @@ const NAMES: &[(&str, Command)] = &[
 ];
 
 impl Command {
+    /// What letting go of its key or button does.
+    pub fn ending(self) -> Option<Self> {
+        match self {
+            Self::Look(_) => Some(Self::LookEnd),
+            Self::Trigger => Some(Self::TriggerEnd),
+            _ => None,
+        }
+    }
+
     /// Names that a file may use.
     pub fn names() -> impl Iterator<Item = &'static str> {
         NAMES.iter().map(|(name, _)| *name)

@@ -45,7 +45,10 @@ pub const DEFAULT_KEYS: &[(&str, KeyAction)] = &[
     ("PageDown", Throttle(-1.0)),
     ("Equal", Throttle(1.0)),
     ("Minus", Throttle(-1.0)),
-    ("Space", Do(Command::Pause)),
+    ("Space", Do(Command::Trigger)),
+    ("KeyM", Do(Command::MasterArm)),
+    ("KeyN", Do(Command::NextWeapon)),
+    ("KeyB", Do(Command::NextRipple)),
     ("KeyP", Do(Command::Pause)),
     ("KeyF", Do(Command::Freeze)),
     ("KeyR", Do(Command::Reset)),
@@ -107,8 +110,10 @@ impl Keyboard {
         let was_held = self.held.contains(&name);
         if !pressed {
             self.held.retain(|held| *held != name);
-            let look_ended = was_held && matches!(action, Do(Command::Look(_)));
-            return look_ended.then_some(Command::LookEnd);
+            return match action {
+                Do(command) if was_held => command.ending(),
+                _ => None,
+            };
         }
         if was_held {
             return None;
@@ -214,9 +219,12 @@ mod tests {
     #[test]
     fn a_command_comes_once_a_press_and_the_throttle_stays() {
         let mut keyboard = Keyboard::new(0.5);
-        assert_eq!(keyboard.key("Space", true), Some(Command::Pause));
-        assert_eq!(keyboard.key("Space", true), None, "repeat");
-        assert_eq!(keyboard.key("Space", false), None);
+        assert_eq!(keyboard.key("KeyP", true), Some(Command::Pause));
+        assert_eq!(keyboard.key("KeyP", true), None, "repeat");
+        assert_eq!(keyboard.key("KeyP", false), None);
+        assert_eq!(keyboard.key("Space", true), Some(Command::Trigger));
+        assert_eq!(keyboard.key("Space", false), Some(Command::TriggerEnd));
+        assert_eq!(keyboard.key("Space", false), None, "not held");
         assert_eq!(keyboard.key("Numpad4", true), Some(Command::Look(ViewLook::Left)));
         assert_eq!(keyboard.key("Numpad4", false), Some(Command::LookEnd));
         assert_eq!(keyboard.key("NoSuchKey", true), None);

@@ -37,10 +37,12 @@ pub(super) struct Arms {
     /// Whether anything may be released.
     pub master: bool,
     pub selected: Option<u32>,
+    /// How many bombs or rockets leave at a press of the trigger; 0 counts as 1.
+    pub ripple: u32,
     /// As the crew has set it; `None` leaves every weapon its own.
     pub fuze: Option<Fuze>,
 }
-coded!(Arms { stations, master, selected, fuze });
+coded!(Arms { stations, master, selected, ripple, fuze });
 
 /// What goes with a projectile of a weapon.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,6 +91,8 @@ pub struct WeaponPage {
     pub selected: Option<usize>,
     /// Whether anything may be released.
     pub master: bool,
+    /// How many bombs or rockets leave at a press of the trigger.
+    pub ripple: u32,
     /// The fuze of the selected one.
     pub fuze: Option<Fuze>,
     /// Where the selected one would strike if it were released now.
@@ -207,12 +211,7 @@ impl Scene {
             self.page = None;
             return;
         };
-        let mut kinds: Vec<u32> = Vec::new();
-        for station in &arms.stations {
-            if !kinds.contains(&station.weapon) {
-                kinds.push(station.weapon);
-            }
-        }
+        let kinds = arms.kinds();
         let row = |&weapon: &u32| {
             let named = &self.catalogue.weapons[weapon as usize];
             let (left, loaded) = arms.rounds(weapon);
@@ -228,6 +227,7 @@ impl Scene {
         let fuze = arms.selected.map(|of| arms.fuze.unwrap_or(self.catalogue.weapons[of as usize].thing.fuze));
         let rows = kinds.iter().map(row).collect();
         let ccip = self.ccip(self.own_id, ground);
-        self.page = Some(Arc::new(WeaponPage { rows, selected, master: arms.master, fuze, ccip }));
+        self.page =
+            Some(Arc::new(WeaponPage { rows, selected, master: arms.master, ripple: arms.ripple.max(1), fuze, ccip }));
     }
 }

@@ -94,6 +94,11 @@ impl Scene {
                     self.seek(self.track_m);
                 }
             }
+            input::Command::MasterArm
+            | input::Command::NextWeapon
+            | input::Command::NextRipple
+            | input::Command::Trigger
+            | input::Command::TriggerEnd => self.crew(command),
             input::Command::TimeForward => later(&mut self.clock, HOUR_S),
             input::Command::TimeBack => later(&mut self.clock, -HOUR_S),
             input::Command::DateForward => later(&mut self.clock, MONTH_S),
