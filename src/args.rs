@@ -129,6 +129,12 @@ pub struct FlyArgs {
     /// How fast, metres a second.
     #[arg(long, value_name = "V", value_parser = values::speed_mps, allow_hyphen_values = true)]
     pub speed_mps: Option<f64>,
+    /// Play these inputs (I.csv), as --record writes them, in the place of a pilot's.
+    #[arg(long, value_name = "FILE")]
+    pub inputs: Option<PathBuf>,
+    /// Write the pilot's inputs to this file (I.csv) at the end.
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
     /// Bindings of sticks, as `poligon input --write` makes them [default: the pilot's own, if there are any].
     #[arg(long, value_name = "FILE")]
     pub sticks: Option<PathBuf>,

@@ -30,6 +30,11 @@ pub struct Clock {
 }
 
 impl Clock {
+    /// Steps a second.
+    pub fn step_hz(&self) -> u32 {
+        self.step_hz
+    }
+
     /// A clock at step 0; `step_hz` is held within 1..=10,000.
     pub fn new(step_hz: u32, date: UtcTime) -> Self {
         Self {

@@ -1,6 +1,7 @@
 //! Lockstep: a fixed step a frame, every block waited for. The same input gives the same hashes.
 
 use super::device_failed;
+use super::inputs;
 use super::pictures;
 use super::plan::{LOCKSTEP_HZ, Length, Plan};
 use super::record::{Ending, Record, RunningHash};
@@ -35,6 +36,7 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
     let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
     let ground = scenery.scene_ground();
     let mut scene = plan.scene(date);
+    inputs::prepare(args, &mut scene)?;
     let mut seat = Seat::new(&world, &scene, args.camera);
     let mut sun = Sun::new(&world, date)?;
     let frames = match length {
@@ -67,6 +69,7 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
         bar.show((frame + 1) as f64 / frames as f64);
     }
     drop(bar);
+    inputs::keep(args, &scene)?;
     let last = target.read(&scenery.gpu).map_err(device_failed)?;
     let ending = Ending {
         mode: "lockstep",

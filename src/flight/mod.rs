@@ -6,6 +6,7 @@
 
 pub mod headless;
 pub mod holes;
+pub mod inputs;
 pub mod paced;
 pub mod pictures;
 pub mod plan;

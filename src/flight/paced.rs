@@ -6,6 +6,7 @@
 
 use super::device_failed;
 use super::holes;
+use super::inputs;
 use super::pictures;
 use super::plan::{Length, Plan};
 use super::record::{Ending, Record};
@@ -44,6 +45,7 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
     let ground = scenery.scene_ground();
     let mut scene = plan.scene(date);
+    inputs::prepare(args, &mut scene)?;
     let mut seat = Seat::new(&world, &scene, args.camera);
     sim::lockstep(&mut scene, &ground, 1);
     // Held until the first picture, which takes as long as filling the window does.
@@ -96,6 +98,7 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     drop(bar);
     let flown_s = begun.elapsed().as_secs_f64();
     let scene = sim.stop().map_err(|error| Failure::Failed(error.to_string()))?;
+    inputs::keep(args, &scene)?;
     let last = scene.snapshot();
     if last.slowed_s > 0.05 {
         output::tell(format_args!(

@@ -4,6 +4,7 @@
 //! takes over. The eye is sampled after the input was read and after the next image has been waited for, right before the
 //! frame is encoded. A frame's time is from one frame's beginning to the next's.
 
+use super::inputs;
 use super::plan::{LOCKSTEP_HZ, Length, Plan};
 use super::record::{Ending, Record};
 use crate::args::FlyArgs;
@@ -168,6 +169,7 @@ impl<'a> Cockpit<'a> {
             let date = self.args.view.time.unwrap_or_else(|| scenery::default_moment(&self.world));
             let ground = scenery.scene_ground();
             let mut scene = plan.scene(date);
+            inputs::prepare(self.args, &mut scene)?;
             let seat = Seat::new(&self.world, &scene, self.args.camera);
             sim::lockstep(&mut scene, &ground, 1);
             // Held until the first picture is there.
@@ -266,7 +268,10 @@ impl<'a> Cockpit<'a> {
         if !flown.sim.is_running() {
             return Err(Failure::Failed("the simulation stopped by itself".to_owned()));
         }
-        flown.hear(controls);
+        // Inputs that are played have the controls to themselves.
+        if self.args.inputs.is_none() {
+            flown.hear(controls);
+        }
         flown.seat.head.update(wall_s);
 
         let snapshot = flown.sim.now();
@@ -358,7 +363,9 @@ impl<'a> Cockpit<'a> {
             return Err(Failure::Failed("the window closed before there was a picture".to_owned()));
         };
         let flown_s = flown.begun.map_or(0.0, |begun| begun.elapsed().as_secs_f64());
-        let last = flown.sim.stop().map_err(|error| Failure::Failed(error.to_string()))?.snapshot();
+        let scene = flown.sim.stop().map_err(|error| Failure::Failed(error.to_string()))?;
+        inputs::keep(self.args, &scene)?;
+        let last = scene.snapshot();
         let ending = Ending { mode: "window", flown_s, steps: last.step, sim_hash: report::hash(last.hash()) };
         let shots = self.pictures.iter().map(|path| path.display().to_string()).collect();
         Ok(Fly { shots, ..self.record.report(&scenery, &ending) })

@@ -8,6 +8,7 @@ mod head;
 pub mod joystick;
 pub mod keyboard;
 pub mod profile;
+pub mod recording;
 
 pub use controls::{Command, Controls, Curve, ViewLook};
 pub use head::Head;
