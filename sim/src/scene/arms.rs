@@ -216,7 +216,13 @@ impl Scene {
         let row = |&weapon: &u32| {
             let named = &self.catalogue.weapons[weapon as usize];
             let (left, loaded) = arms.rounds(weapon);
-            PageRow { weapon: named.name.clone(), label: named.thing.label.clone(), kind: named.thing.kind, left, loaded }
+            PageRow {
+                weapon: named.name.clone(),
+                label: named.thing.label.clone(),
+                kind: named.thing.kind,
+                left,
+                loaded,
+            }
         };
         let selected = arms.selected.and_then(|weapon| kinds.iter().position(|kind| *kind == weapon));
         let fuze = arms.selected.map(|of| arms.fuze.unwrap_or(self.catalogue.weapons[of as usize].thing.fuze));

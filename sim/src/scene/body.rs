@@ -88,7 +88,22 @@ pub(super) struct Body {
 }
 coded!(Stiffness { speed_mps, lambda_radps, per_flow });
 coded!(Mode { lambda_radps, flow });
-coded!(Body { model, state, controls, tanks, stores, failures, gust, ended, jumps, stiffness, mode, looks, pieces, look_in });
+coded!(Body {
+    model,
+    state,
+    controls,
+    tanks,
+    stores,
+    failures,
+    gust,
+    ended,
+    jumps,
+    stiffness,
+    mode,
+    looks,
+    pieces,
+    look_in
+});
 
 /// What a step did beside moving.
 #[derive(Debug, Clone, Copy, PartialEq)]

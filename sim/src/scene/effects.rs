@@ -10,8 +10,8 @@
 use super::arms::Load;
 use super::codec::coded;
 use super::event::{Happening, Strike};
-use super::target::TargetState;
 use super::shell::Shell;
+use super::target::TargetState;
 use super::{Refused, Scene, SceneGround, found, place};
 use crate::ballistics::targets::{Pose, Target};
 use crate::random::Stream;
@@ -51,22 +51,7 @@ pub(super) struct Ended {
     scored: Option<StableId>,
     miss: Option<(f64, u32)>,
 }
-coded!(Ended {
-    time_s,
-    id,
-    owner,
-    round,
-    load,
-    age_s,
-    point_m,
-    target,
-    object,
-    in_air,
-    rested,
-    kills,
-    scored,
-    miss
-});
+coded!(Ended { time_s, id, owner, round, load, age_s, point_m, target, object, in_air, rested, kills, scored, miss });
 
 impl Ended {
     /// One that burst in the air.
@@ -224,7 +209,7 @@ impl Scene {
             if from_m.length() - swept.shape.radius_m() > reach_m {
                 continue;
             }
-            let (id, distance_m) = (swept.id, swept.shape.distance_m(from_m));
+            let (id, distance_m) = (swept.id, swept.shape.distance_m(from_m).max(0.0));
             let Some(armour) = self.armour_of(id) else { continue };
             let chance = Stream::new(&[self.surroundings.seed, id.0, one.id.0, KEY_DAMAGE]).uniform();
             let amount = if chance < warhead.kills(distance_m, armour) {

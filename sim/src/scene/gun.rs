@@ -155,17 +155,7 @@ impl Burst {
             )));
         }
         let interval_s = if rounds == 1 { 0.0 } else { 60.0 / per_minute };
-        Ok(Self {
-            owner,
-            projectile,
-            muzzle,
-            load: None,
-            first_s: now_s,
-            interval_s,
-            fired: 0,
-            rounds,
-            together: 1,
-        })
+        Ok(Self { owner, projectile, muzzle, load: None, first_s: now_s, interval_s, fired: 0, rounds, together: 1 })
     }
 
     /// Rounds of a weapon, so many together every `interval_s`.

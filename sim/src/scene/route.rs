@@ -42,12 +42,7 @@ struct Corner {
 }
 
 impl Route {
-    pub fn new(
-        waypoints_m: Vec<DVec2>,
-        speed_mps: f64,
-        turn_radps: Option<f64>,
-        loops: bool,
-    ) -> Result<Self, Refused> {
+    pub fn new(waypoints_m: Vec<DVec2>, speed_mps: f64, turn_radps: Option<f64>, loops: bool) -> Result<Self, Refused> {
         let route = Self { waypoints_m, speed_mps, turn_radps, loops, leg: 0, along_m: 0.0, turned_rad: 0.0 };
         route.check()?;
         Ok(route)
