@@ -173,20 +173,23 @@ impl Shape {
         self.radius_m
     }
 
-    /// Distance from a point to the shape, metres; 0 in it. Of a hull it is the distance to the farthest of the planes that
-    /// the point is in front of: exact before a face, less than the true one beside edges and corners.
-    pub fn distance_m(&self, from_m: DVec3) -> f64 {
-        let aside = || from_m.x.hypot(from_m.z);
+    /// Signed distance of a point from the surface, metres, below 0 inside. Outside a hull it is the distance to the
+    /// farthest of the planes that the point is in front of: exact before a face, less than the true one beside edges.
+    pub fn distance_m(&self, p: DVec3) -> f64 {
+        let rect = |x: f64, y: f64| x.max(0.0).hypot(y.max(0.0)) + x.max(y).min(0.0);
         match &self.form {
-            Form::Sphere { radius_m } => (from_m.length() - radius_m).max(0.0),
-            Form::Block { half_m } => (from_m.abs() - half_m).max(DVec3::ZERO).length(),
-            Form::Cylinder { half_height_m, radius_m } => {
-                (aside() - radius_m).max(0.0).hypot((from_m.y.abs() - half_height_m).max(0.0))
+            Form::Sphere { radius_m } => p.length() - radius_m,
+            Form::Block { half_m } => {
+                let q = p.abs() - *half_m;
+                q.max(DVec3::ZERO).length() + q.max_element().min(0.0)
             }
             Form::Capsule { half_height_m, radius_m } => {
-                (aside().hypot((from_m.y.abs() - half_height_m).max(0.0)) - radius_m).max(0.0)
+                p.distance(DVec3::Y * p.y.clamp(-half_height_m, *half_height_m)) - radius_m
             }
-            Form::Hull { planes } => planes.iter().map(|p| p.normal.dot(from_m) - p.offset_m).fold(0.0, f64::max),
+            Form::Cylinder { half_height_m, radius_m } => rect(p.x.hypot(p.z) - radius_m, p.y.abs() - half_height_m),
+            Form::Hull { planes } => {
+                planes.iter().map(|plane| plane.normal.dot(p) - plane.offset_m).fold(f64::NEG_INFINITY, f64::max)
+            }
         }
     }
 

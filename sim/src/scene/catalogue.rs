@@ -105,6 +105,14 @@ impl Catalogue {
         self.kind(name).map(|kind| &*self.kinds[kind as usize].thing)
     }
 
+    /// The kind of target of a name.
+    ///
+    /// # Errors
+    /// [`Refused`] names those that there are.
+    pub fn target_kind(&self, name: &str) -> Result<&TargetKind, Refused> {
+        place("target", &self.kinds, name).map(|kind| &*self.kinds[kind as usize].thing)
+    }
+
     /// The place of a kind of target, if there is one of this name.
     pub(super) fn kind(&self, name: &str) -> Option<u32> {
         self.kinds.iter().position(|named| named.name == name).map(|place| place as u32)

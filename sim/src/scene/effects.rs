@@ -209,7 +209,7 @@ impl Scene {
             if from_m.length() - swept.shape.radius_m() > reach_m {
                 continue;
             }
-            let (id, distance_m) = (swept.id, swept.shape.distance_m(from_m));
+            let (id, distance_m) = (swept.id, swept.shape.distance_m(from_m).max(0.0));
             let Some(armour) = self.armour_of(id) else { continue };
             let chance = Stream::new(&[self.surroundings.seed, id.0, one.id.0, KEY_DAMAGE]).uniform();
             let amount = if chance < warhead.kills(distance_m, armour) {

@@ -17,7 +17,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 pub const CONTACT_M: f64 = 1e-6;
 /// Most looks at the ground. Each moves the contacts by the change of tilt times their arm's height over the ground; where
 /// that does not settle (over a cliff) the last pose is kept.
-const MOST_LOOKS: u32 = 16;
+const MOST_LOOKS: u32 = 48;
 
 /// Level, facing a unit direction in plan (x, z).
 pub(super) fn upright(facing: DVec2) -> DQuat {

@@ -18,6 +18,7 @@ pub mod builtin;
 pub mod ccip;
 pub mod crater;
 pub mod fuze;
+pub mod range;
 pub mod score;
 pub mod target_kind;
 pub mod warhead;

@@ -9,27 +9,6 @@ use rapier3d::parry::shape as engine;
 const SEED_CASTS: u64 = 20_261_124;
 const SEED_ENDS: u64 = 20_261_125;
 
-impl Shape {
-    /// Signed distance of a point from the surface, below 0 inside. A hull's is a lower bound outside.
-    pub(in crate::ballistics) fn distance_m(&self, p: DVec3) -> f64 {
-        let rect = |x: f64, y: f64| x.max(0.0).hypot(y.max(0.0)) + x.max(y).min(0.0);
-        match &self.form {
-            Form::Sphere { radius_m } => p.length() - radius_m,
-            Form::Block { half_m } => {
-                let q = p.abs() - *half_m;
-                q.max(DVec3::ZERO).length() + q.max_element().min(0.0)
-            }
-            Form::Capsule { half_height_m, radius_m } => {
-                p.distance(DVec3::Y * p.y.clamp(-half_height_m, *half_height_m)) - radius_m
-            }
-            Form::Cylinder { half_height_m, radius_m } => rect(p.x.hypot(p.z) - radius_m, p.y.abs() - half_height_m),
-            Form::Hull { planes } => {
-                planes.iter().map(|plane| plane.normal.dot(p) - plane.offset_m).fold(f64::NEG_INFINITY, f64::max)
-            }
-        }
-    }
-}
-
 fn vector(random: &mut StdRng, size: f64) -> DVec3 {
     DVec3::from_array([(); 3].map(|()| random.random_range(-size..size)))
 }
