@@ -8,6 +8,7 @@ mod bench;
 mod fly;
 mod gallery;
 mod height;
+mod modes;
 mod shot;
 mod sight;
 mod simulate;
@@ -23,6 +24,7 @@ pub use fly::{
 };
 pub use gallery::Gallery;
 pub use height::{HeightPoint, Heights};
+pub use modes::{FigureFound, LimitFound, ModeFound, ModesReport};
 pub use shot::Shot;
 pub use sight::{Hit, Sight};
 pub use simulate::{Simulated, Stiffness, TrimFound};

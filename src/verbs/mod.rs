@@ -8,6 +8,7 @@ pub mod fly;
 pub mod gallery;
 pub mod height;
 pub mod info;
+pub mod modes;
 pub mod shot;
 pub mod sight;
 pub mod simulate;

@@ -7,9 +7,11 @@ mod controls;
 mod head;
 pub mod joystick;
 pub mod keyboard;
+mod levers;
 
 pub use controls::{Command, Controls, Curve, ViewLook};
 pub use head::Head;
+pub use levers::Levers;
 
 use joystick::Joystick;
 use keyboard::Keyboard;

@@ -10,7 +10,8 @@ use super::codec::{Coded, Reader, SaveError, coded, coded_choice};
 use super::failure::{Failure, FuelChange};
 use super::gun::Muzzle;
 use crate::aircraft::{AircraftState, Condition};
-use crate::input::{self, Controls};
+use crate::autopilot::Holds;
+use crate::input::{self, Controls, Levers};
 use crate::snapshot::StableId;
 use crate::utc::UtcTime;
 use glam::{DQuat, DVec3};
@@ -109,6 +110,20 @@ pub enum Command {
         /// Rate of fire; 0 for a single round.
         per_minute: f64,
     },
+    /// Levers of the own aircraft from now on.
+    Levers(Levers),
+    /// Makes a body the own aircraft, flown by the pilot's controls and levers; the own id makes it the point mass.
+    FlyBody {
+        /// Which.
+        id: StableId,
+    },
+    /// Engages the autopilot of a body, or takes it out.
+    Autopilot {
+        /// Whose.
+        id: StableId,
+        /// What it holds.
+        holds: Option<Holds>,
+    },
     /// Ends all bursts of an owner.
     CeaseFire {
         /// Whose.
@@ -126,6 +141,7 @@ pub struct Stamped {
 }
 coded!(Stamped { step, command });
 
+coded!(Levers { mixture, flaps, gear, brakes, parking_brake, trim, starter });
 coded!(Controls { pitch, roll, yaw, throttle });
 coded_choice!(Condition { Flying, OnGround, Crashed });
 coded!(UtcTime { unix_ns });
@@ -209,6 +225,9 @@ impl Coded for Command {
                 (*rounds, *per_minute).put(out);
             }
             Self::CeaseFire { owner } => (15u8, *owner).put(out),
+            Self::Levers(levers) => (16u8, *levers).put(out),
+            Self::FlyBody { id } => (17u8, *id).put(out),
+            Self::Autopilot { id, holds } => (18u8, (*id, *holds)).put(out),
         }
     }
 
@@ -242,7 +261,13 @@ impl Coded for Command {
                 Self::Fire { owner, projectile, muzzle, rounds, per_minute }
             }
             15 => Self::CeaseFire { owner: from.take()? },
-            found => return Err(from.refuse(format_args!("command: expected 0..=15, found {found}"))),
+            16 => Self::Levers(from.take()?),
+            17 => Self::FlyBody { id: from.take()? },
+            18 => {
+                let (id, holds) = from.take()?;
+                Self::Autopilot { id, holds }
+            }
+            found => return Err(from.refuse(format_args!("command: expected 0..=18, found {found}"))),
         })
     }
 }

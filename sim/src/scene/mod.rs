@@ -2,6 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `flown.rs` | the own aircraft as one of the bodies |
 //! | `own.rs` | the own aircraft: piloted, on its track, slewed |
 //! | `body.rs`, `failure.rs` | rigid bodies, their failures and fuel |
 //! | `shell.rs`, `gun.rs` | projectiles, and how they are fired |
@@ -25,6 +26,7 @@ mod codec;
 mod command;
 mod event;
 mod failure;
+mod flown;
 mod ground;
 mod gun;
 mod orders;
@@ -43,6 +45,7 @@ pub use codec::SaveError;
 pub use command::{Command, Freeze, Stamped};
 pub use event::{EndReason, Event, Happening, KEPT_S, MOST_KEPT, Strike};
 pub use failure::{Failure, Fuel, FuelChange, MOST_FAILURES};
+pub use flown::Instruments;
 pub use ground::{GroundTouch, LOOK_M, SceneGround};
 pub use gun::{MOST_PER_MINUTE, Muzzle};
 pub use surroundings::{MOST_WIND_MPS, Surroundings};
@@ -56,7 +59,7 @@ use crate::aircraft::point_mass::PointMass;
 use crate::aircraft::{self, AircraftState, FARTHEST_M};
 use crate::ballistics::targets::Target;
 use crate::clock::{Clock, DEFAULT_STEP_HZ};
-use crate::input::Controls;
+use crate::input::{Controls, Levers};
 use crate::snapshot::{Mode, StableId};
 use crate::track::Track;
 use crate::utc::UtcTime;
@@ -105,6 +108,9 @@ pub struct Scene {
     model: PointMass,
     start: AircraftState,
     controls: Controls,
+    levers: Levers,
+    /// The body that is the own aircraft, if it is one.
+    flown: Option<StableId>,
     track: Option<Track>,
     track_m: f64,
     mode: Mode,
@@ -183,6 +189,8 @@ impl Scene {
             model: PointMass::default(),
             start,
             controls,
+            levers: Levers::default(),
+            flown: None,
             track: None,
             track_m: 0.0,
             mode: Mode::Pilot,
