@@ -132,7 +132,7 @@ fn hard_landings_end_with_their_cause_and_no_number_that_is_none() {
             DVec3::Y * 60.0,
             DVec3::new(0.0, -70.0 * dive.sin(), -70.0 * dive.cos()),
             turned(0.0, -dive, 0.0),
-            &[EndReason::Propeller, EndReason::Hull, EndReason::Ground],
+            &[EndReason::Propeller, EndReason::Hull, EndReason::Gear],
         ),
         ("flat at 8 m/s", &flat, DVec3::Y * 3.0, DVec3::new(0.0, -8.0, -30.0), north(), &[EndReason::Gear]),
         ("on one wheel at 2 m/s", &flat, DVec3::Y * 2.0, DVec3::new(0.0, -1.0, -28.0), turned(0.0, 0.05, 0.15), &[]),

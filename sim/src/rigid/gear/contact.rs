@@ -139,13 +139,6 @@ pub struct Press {
     across: DVec3,
 }
 
-impl Press {
-    /// Speed into the ground, m/s.
-    pub fn closing_mps(&self, footing: &Footing) -> f64 {
-        -self.velocity_mps.dot(footing.normal)
-    }
-}
-
 impl Contact {
     fn relaxation_m(&self) -> Option<f64> {
         self.rolling.as_ref().map(|rolling| rolling.relaxation_m)

@@ -128,37 +128,47 @@ pub(crate) fn step(
     let piece_s = dt_s / f64::from(pieces);
     let mut y = *y;
     for piece in 0..pieces {
-        let at = pose(motion, &y);
-        let mut planes = std::mem::take(&mut motion.planes);
-        for ((one, plane), tread) in model.contacts.iter().zip(&mut planes).zip(&motion.treads) {
-            *plane = deepest(at.point_m(one.at_m), one.radius_m, ground);
-            let Some(footing) = plane else { continue };
-            let Some(press) = one.press(&at, footing, &motion.controls, most_n) else { continue };
-            let closing_mps = press.closing_mps(footing);
-            let is_new = tread.is_none();
+        let before = pose(motion, &y);
+        let met = |one: &Contact, footing: &Footing, point_m: DVec3| Met {
+            part: one.part,
+            is_water: footing.surface.is_water,
+            point_m,
+            normal: footing.normal,
+            velocity_mps: before.velocity_of(point_m),
+            fraction: f64::from(piece) / f64::from(pieces),
+        };
+        for (one, plane) in model.contacts.iter().zip(&mut motion.planes) {
+            *plane = deepest(before.point_m(one.at_m), one.radius_m, ground);
+        }
+        let good = y;
+        y = motion::normalised(integrate::step(Integrator::Rk4, motion, 0.0, &y, piece_s, &mut None));
+        let after = pose(motion, &y);
+        let mut broken: Option<(f64, Met)> = None;
+        for (place, one) in model.contacts.iter().enumerate() {
+            let Some(footing) = motion.planes[place] else {
+                motion.treads[place] = None;
+                continue;
+            };
+            let Some(press) = one.press(&after, &footing, &motion.controls, most_n) else {
+                motion.treads[place] = None;
+                continue;
+            };
+            // As it came, before its spring could slow it.
+            let closing_mps = -before.velocity_of(before.point_m(one.at_m)).dot(footing.normal);
+            let is_new = motion.treads[place].is_none();
             // A strut driven past its stop is as broken as one that met the ground too fast.
             let is_through = press.travel_m > 1.5 * one.travel_m + 0.5 * one.radius_m + 0.3;
             if footing.surface.is_water || is_through || (is_new && closing_mps > one.breaks_mps) {
-                let met = Met {
-                    part: one.part,
-                    is_water: footing.surface.is_water,
-                    point_m: press.point_m,
-                    normal: footing.normal,
-                    velocity_mps: press.velocity_mps,
-                    fraction: f64::from(piece) / f64::from(pieces),
-                };
-                motion.planes.clear();
-                return Some((y, Some(met)));
+                // Of several in one piece the deepest was the first.
+                if broken.is_none_or(|(depth_m, _)| press.depth_m > depth_m) {
+                    broken = Some((press.depth_m, met(one, &footing, press.point_m)));
+                }
             }
+            motion.treads[place] = Some(one.tread_after(&press, &footing, motion.treads[place], &motion.controls));
         }
-        motion.planes = planes;
-        y = motion::normalised(integrate::step(Integrator::Rk4, motion, 0.0, &y, piece_s, &mut None));
-        let at = pose(motion, &y);
-        for (place, one) in model.contacts.iter().enumerate() {
-            motion.treads[place] = motion.planes[place].and_then(|footing| {
-                let press = one.press(&at, &footing, &motion.controls, most_n)?;
-                Some(one.tread_after(&press, &footing, motion.treads[place], &motion.controls))
-            });
+        if let Some((_, met)) = broken {
+            motion.planes.clear();
+            return Some((good, Some(met)));
         }
     }
     motion.planes.clear();
