@@ -42,6 +42,8 @@ pub enum Verb {
     Simulate(SimulateArgs),
     /// Fly a shell or a bomb, as CSV.
     Trajectory(TrajectoryArgs),
+    /// Measure how a model flies: its modes beside MIL-F-8785C, its figures beside its handbook.
+    Modes(ModesArgs),
     /// Take one picture.
     Shot(ShotArgs),
     /// Take many pictures from a list, and a contact sheet of them.
@@ -265,6 +267,25 @@ pub struct SimulateArgs {
     /// The rows, as CSV.
     #[arg(long, value_name = "O.csv")]
     pub out: Option<PathBuf>,
+}
+
+/// `poligon modes`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The model needs controls elevator, aileron, rudder and throttle with their units; a [handbook] is \
+                        compared if it has one. Where a mode or\nfigure is outside its limit the exit status is 1.\n\n\
+                        Example:\n  poligon modes --model assets/aircraft/trainer.toml"
+)]
+pub struct ModesArgs {
+    /// The body.
+    #[arg(long, value_name = "M.toml")]
+    pub model: PathBuf,
+    /// Altitude of the flight that its modes are measured in, metres.
+    #[arg(long, value_name = "M", default_value = "1500", allow_hyphen_values = true)]
+    pub altitude_m: f64,
+    /// Its speed, metres a second [default: 0.7 of the never-exceed speed].
+    #[arg(long, value_name = "V", value_parser = values::speed_mps, allow_hyphen_values = true)]
+    pub speed_mps: Option<f64>,
 }
 
 /// `poligon trajectory`

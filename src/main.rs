@@ -64,6 +64,7 @@ fn run(line: &CommandLine, started: Instant) -> Result<(), Failure> {
         Verb::Height(args) => verbs::height::run(args, output),
         Verb::Sight(args) => verbs::sight::run(args, output),
         Verb::Simulate(args) => verbs::simulate::run(args, output),
+        Verb::Modes(args) => verbs::modes::run(args, output),
         Verb::Shot(args) => verbs::shot::run(args, output),
         Verb::Gallery(args) => verbs::gallery::run(args, output),
         Verb::Input(args) => verbs::input::run(args, output),

@@ -15,6 +15,7 @@
 
 pub mod aircraft;
 pub mod atmosphere;
+pub mod autopilot;
 pub mod ballistics;
 pub mod case;
 pub mod clock;
@@ -22,6 +23,7 @@ pub mod daveml;
 pub mod file;
 pub mod frame;
 pub mod ground_contact;
+pub mod handling;
 pub mod input;
 pub mod integrate;
 pub mod limit;
@@ -42,7 +44,7 @@ pub mod world_ground;
 
 pub use aircraft::{AircraftState, Condition};
 pub use clock::Clock;
-pub use input::{Command, Controls};
+pub use input::{Command, Controls, Levers};
 pub use run::{SimThread, lockstep};
 pub use scene::{Scene, SceneGround};
 pub use snapshot::{Flags, Mode, Snapshot};

@@ -5,7 +5,7 @@
 
 use crate::aircraft::AircraftState;
 use crate::input::Controls;
-use crate::scene::{EntityView, Event, FNV_BASIS, WeaponPage, fnv, interpolated};
+use crate::scene::{EntityView, Event, FNV_BASIS, Instruments, WeaponPage, fnv, interpolated};
 use crate::utc::UtcTime;
 use glam::DQuat;
 use std::sync::Arc;
@@ -82,6 +82,8 @@ pub struct Snapshot {
     pub events_counted: u64,
     /// A hash over all of them.
     pub events_chain: u64,
+    /// Instruments of an own aircraft that is a rigid body. Not part of the hash: they follow from the rest.
+    pub instruments: Option<Instruments>,
 }
 
 impl Flags {

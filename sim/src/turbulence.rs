@@ -71,7 +71,7 @@ mod tests {
 
     #[test]
     fn sigma_is_that_asked_for_at_any_step() {
-        for hz in [1.0, 30.0, 120.0, 240.0] {
+        for hz in [1.0, 30.0, 60.0, 120.0, 240.0] {
             // Mean over many flights at 300 m/s, so that samples are independent: 4 standard errors of 8,000 are 3.2 %.
             let flights = 8_000u64;
             let (mut start, mut end) = (DVec3::ZERO, DVec3::ZERO);

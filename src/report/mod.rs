@@ -9,6 +9,7 @@ mod fly;
 mod gallery;
 mod height;
 mod input;
+mod modes;
 mod shot;
 mod sight;
 mod simulate;
@@ -25,6 +26,7 @@ pub use fly::{
 pub use gallery::Gallery;
 pub use height::{HeightPoint, Heights};
 pub use input::{AxisSeen, ButtonSeen, Device, Input};
+pub use modes::{FigureFound, LimitFound, ModeFound, ModesReport};
 pub use shot::Shot;
 pub use sight::{Hit, Sight};
 pub use simulate::{Simulated, Stiffness, TrimFound};

@@ -9,6 +9,7 @@ pub mod gallery;
 pub mod height;
 pub mod info;
 pub mod input;
+pub mod modes;
 pub mod shot;
 pub mod sight;
 pub mod simulate;

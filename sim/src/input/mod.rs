@@ -7,11 +7,13 @@ mod controls;
 mod head;
 pub mod joystick;
 pub mod keyboard;
+mod levers;
 pub mod profile;
 pub mod recording;
 
 pub use controls::{Command, Controls, Curve, ViewLook};
 pub use head::Head;
+pub use levers::Levers;
 
 use joystick::Joystick;
 use keyboard::Keyboard;

@@ -65,6 +65,8 @@ pub struct Factors {
     pub value: f64,
     /// The table, by its place in [`Tables`].
     pub table: Option<usize>,
+    /// Another one.
+    pub and_table: Option<usize>,
     /// Slots of the quantities.
     pub times: Vec<usize>,
 }
@@ -150,7 +152,10 @@ impl Factors {
     /// Their product.
     #[inline]
     pub fn product(&self, slots: &[f64; SLOTS], tables: &TableValues) -> f64 {
-        let start = self.value * self.table.map_or(1.0, |table| tables[table]);
+        let mut start = self.value * self.table.map_or(1.0, |table| tables[table]);
+        if let Some(table) = self.and_table {
+            start *= tables[table];
+        }
         self.times.iter().fold(start, |product, &slot| product * slots[slot])
     }
 }

@@ -7,6 +7,9 @@
 //! | `model_checks.rs` | every check on it |
 //! | `model.rs` | the checked model |
 //! | `aero.rs` | coefficients, forces and moments |
+//! | `gear/` | wheels, and what else meets the ground |
+//! | `power/` | a piston engine and its propeller |
+//! | `handbook.rs` | figures that a model is held to |
 //! | `links.rs` | DAVE-ML files bound to the model and to each other |
 //! | `motion.rs` | the equations of motion |
 //! | `column.rs` | what is reported of a state |
@@ -21,12 +24,15 @@
 
 pub mod aero;
 pub mod column;
+pub mod gear;
+pub mod handbook;
 pub mod inputs;
 pub mod links;
 pub mod model;
 mod model_checks;
 mod model_file;
 pub mod motion;
+pub mod power;
 pub mod quantity;
 pub mod simulation;
 pub mod start;

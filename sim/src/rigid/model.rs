@@ -7,9 +7,16 @@
 //! Invariant others rely on: mass and inertia are those of a body that can exist, and every name is a slot.
 
 use super::aero::{Axes, COEFFICIENTS, Flow, Tables, Term, Thrust};
+use super::gear::contact::Contact;
+use super::gear::file::contacts;
+use super::handbook::Handbook;
 use super::links::{self, Found, LinkMemory, Links, Source};
-use super::model_checks::{bound_tables, check_body, controls, needs, notes, sources, tensor, terms, thrusts};
+use super::model_checks::{
+    bound_tables, check_body, controls, needs, notes, sources, stall_cues, tank, tensor, terms, thrusts,
+};
 use super::model_file::{AxesFile, ModelFile};
+use super::power::file::power_plant;
+use super::power::shaft::PowerPlant;
 use super::quantity::{QUANTITIES, Quantity, SLOTS, without_unit};
 use crate::case::Setting;
 use crate::daveml::si_factor;
@@ -28,6 +35,28 @@ pub struct Control {
     pub max: f64,
     /// Value before any input.
     pub initial: f64,
+    /// How fast it moves, in its own unit a second; `None`: at once.
+    pub per_s: Option<f64>,
+}
+
+/// Where fuel lies, and how much goes in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FuelTank {
+    /// Metres from the reference point.
+    pub at_m: DVec3,
+    /// kg.
+    pub capacity_kg: f64,
+}
+
+/// Angles of attack at which a stall tells itself, radians.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StallCues {
+    /// The warning sounds from here on.
+    pub warning_rad: f64,
+    /// The airframe begins to shake.
+    pub buffet_rad: f64,
+    /// It shakes fully.
+    pub full_buffet_rad: f64,
 }
 
 /// The course that the cross-track counts from.
@@ -70,6 +99,16 @@ pub struct Model {
     pub min_speed_mps: f64,
     /// Controls, by name.
     pub controls: Vec<Control>,
+    /// Wheels, and parts that should not touch.
+    pub contacts: Vec<Contact>,
+    /// Engine and propeller, if it has them.
+    pub power: Option<PowerPlant>,
+    /// Its fuel, if that counts in the centre of gravity. Mass and centre of gravity of `[body]` are with full tanks.
+    pub tank: Option<FuelTank>,
+    /// Stall cues, if it has any.
+    pub stall: Option<StallCues>,
+    /// What its handbook says.
+    pub handbook: Option<Handbook>,
     terms: Vec<Term>,
     thrusts: Vec<Thrust>,
     tables: Tables,
@@ -152,6 +191,10 @@ impl Model {
         if let Some(found) = never_exceed_mps.filter(|v| !(*v > 0.0 && *v < 1e5)) {
             return Err(here(format!("body.never_exceed_mps: expected a number above 0, found {found}")));
         }
+        let contacts = contacts(&file.wheel, &file.skid, &controls, mass_kg).map_err(here)?;
+        let power = power_plant(file.engine.as_ref(), file.propeller.as_ref(), &controls).map_err(here)?;
+        let tank = file.fuel.as_ref().map(|fuel| tank(fuel, mass_kg)).transpose().map_err(here)?;
+        let stall = file.stall.as_ref().map(stall_cues).transpose().map_err(here)?;
         let mut model = Self {
             file: path.to_owned(),
             mass_kg,
@@ -170,6 +213,11 @@ impl Model {
             },
             min_speed_mps,
             controls,
+            contacts,
+            power,
+            tank,
+            stall,
+            handbook: file.handbook.clone(),
             terms,
             thrusts,
             tables,
@@ -275,7 +323,14 @@ impl Model {
         self.course
     }
 
-    /// Force and moment at the flight's quantities, which stand in `slots` with the controls behind them.
+    /// Mass and centre of gravity with so much less fuel than full tanks.
+    pub fn lighter(&self, less_kg: f64) -> (f64, DVec3) {
+        let mass_kg = self.mass_kg - less_kg;
+        let Some(tank) = self.tank else { return (mass_kg, self.cg_m) };
+        (mass_kg, (self.cg_m * self.mass_kg - tank.at_m * less_kg) / mass_kg)
+    }
+
+    /// Force and moment about a centre of gravity at the flight's quantities, which stand in `slots` with the controls behind them.
     ///
     /// `through_air` is the body's velocity through the air, forward, right, down; `thrust_share` scales all thrusts.
     #[inline]
@@ -285,6 +340,7 @@ impl Model {
         through_air: DVec3,
         dynamic_pressure_pa: f64,
         thrust_share: f64,
+        cg_m: DVec3,
         memory: &mut LinkMemory,
     ) -> Loads {
         let tables = self.tables.values(slots);
@@ -303,11 +359,11 @@ impl Model {
         let [.., roll, pitch, yaw, _] = c;
         let moment = DVec3::new(roll * self.span_m, pitch * self.chord_m, yaw * self.span_m) * pressed;
         loads.force_n += force;
-        loads.moment_nm += moment + (self.moment_point_m - self.cg_m).cross(force);
+        loads.moment_nm += moment + (self.moment_point_m - cg_m).cross(force);
         for thrust in &self.thrusts {
             let force = thrust.force_n * (thrust.of.product(slots, &tables) * thrust_share);
             loads.force_n += force;
-            loads.moment_nm += (thrust.at_m - self.cg_m).cross(force);
+            loads.moment_nm += (thrust.at_m - cg_m).cross(force);
         }
         loads
     }

@@ -2,8 +2,8 @@
 
 use super::aero::{BoundTable, Coefficient, Factors, MOST_TABLES, Tables, Term, Thrust};
 use super::links::Source;
-use super::model::Control;
-use super::model_file::{AxesFile, ControlFile, DavemlFile, ModelFile, OutsideFile, ThrustFile};
+use super::model::{Control, FuelTank, StallCues};
+use super::model_file::{AxesFile, ControlFile, DavemlFile, FuelFile, ModelFile, OutsideFile, StallFile, ThrustFile};
 use super::quantity::{MOST_CONTROLS, QUANTITIES, Quantity, unit_names, without_unit};
 use crate::daveml::Document;
 use crate::file::{self, FileError};
@@ -15,7 +15,8 @@ use std::sync::Arc;
 /// Whether a term or a thrust asks for a table.
 pub(super) fn is_asked(file: &ModelFile, name: &String) -> bool {
     let asked = |of: &Option<String>| of.as_ref() == Some(name);
-    file.aero.term.iter().any(|term| asked(&term.table)) || file.thrust.iter().any(|thrust| asked(&thrust.table))
+    file.aero.term.iter().any(|term| asked(&term.table) || asked(&term.and_table))
+        || file.thrust.iter().any(|thrust| asked(&thrust.table))
 }
 
 /// Tables that nothing asks for, and angles in radians that are more than a turn.
@@ -69,11 +70,14 @@ pub(super) fn controls(file: &[(String, ControlFile)]) -> Result<Vec<Control>, S
         if Quantity::named(name).is_some() {
             return Err(format!("controls.{name}: expected another name, this is a quantity of the flight"));
         }
-        let ControlFile { min, max, initial } = *control;
+        let ControlFile { min, max, initial, per_s } = *control;
         if !(min <= initial && initial <= max) {
             return Err(format!("controls.{name}: expected min <= initial <= max, found {min}, {initial}, {max}"));
         }
-        Ok(Control { name: name.clone(), min, max, initial })
+        if let Some(found) = per_s.filter(|per_s| !(*per_s > 0.0 && *per_s < 1e9)) {
+            return Err(format!("controls.{name}.per_s: expected a number above 0, found {found}"));
+        }
+        Ok(Control { name: name.clone(), min, max, initial, per_s })
     };
     file.iter().map(one).collect()
 }
@@ -167,6 +171,7 @@ pub(super) fn factors(
     key: &str,
     value: f64,
     table: Option<&String>,
+    and_table: Option<&String>,
     times: &[String],
     controls: &[Control],
     tables: &[String],
@@ -175,7 +180,8 @@ pub(super) fn factors(
         let missing = || format!("{key}.table: expected one of [{}], found {name}", tables.join(", "));
         tables.iter().position(|known| known == name).ok_or_else(missing)
     };
-    Ok(Factors { value, table: table.map(place).transpose()?, times: slots(&format!("{key}.times"), times, controls)? })
+    let (table, and_table) = (table.map(place).transpose()?, and_table.map(place).transpose()?);
+    Ok(Factors { value, table, and_table, times: slots(&format!("{key}.times"), times, controls)? })
 }
 
 pub(super) fn terms(file: &ModelFile, controls: &[Control], tables: &[String]) -> Result<Vec<Term>, String> {
@@ -191,7 +197,8 @@ pub(super) fn terms(file: &ModelFile, controls: &[Control], tables: &[String]) -
             return Err(format!("{key}: expected a value or a table, found neither"));
         }
         let value = term.value.unwrap_or(1.0);
-        all.push(Term { to, of: factors(&key, value, term.table.as_ref(), &term.times, controls, tables)? });
+        let [table, and_table] = [term.table.as_ref(), term.and_table.as_ref()];
+        all.push(Term { to, of: factors(&key, value, table, and_table, &term.times, controls, tables)? });
     }
     Ok(all)
 }
@@ -207,8 +214,26 @@ pub(super) fn thrusts(file: &[ThrustFile], controls: &[Control], tables: &[Strin
             // A table alone is newtons forward.
             force_n: DVec3::from_array(thrust.force_N.unwrap_or([1.0, 0.0, 0.0])),
             at_m: DVec3::from_array(thrust.at_m.unwrap_or_default()),
-            of: factors(&key, 1.0, thrust.table.as_ref(), &thrust.times, controls, tables)?,
+            of: factors(&key, 1.0, thrust.table.as_ref(), None, &thrust.times, controls, tables)?,
         });
     }
     Ok(all)
+}
+
+pub(super) fn tank(file: &FuelFile, mass_kg: f64) -> Result<FuelTank, String> {
+    let capacity_kg = file.capacity_kg;
+    if !(capacity_kg > 0.0 && capacity_kg < mass_kg) {
+        return Err(format!("fuel.capacity_kg: expected a number within 0 and {mass_kg}, found {capacity_kg}"));
+    }
+    Ok(FuelTank { at_m: DVec3::from_array(file.at_m), capacity_kg })
+}
+
+pub(super) fn stall_cues(file: &StallFile) -> Result<StallCues, String> {
+    let StallFile { warning_rad, buffet_rad, full_buffet_rad } = *file;
+    if 0.0 < warning_rad && warning_rad <= buffet_rad && buffet_rad < full_buffet_rad && full_buffet_rad < 3.2 {
+        return Ok(StallCues { warning_rad, buffet_rad, full_buffet_rad });
+    }
+    Err(format!(
+        "stall: expected 0 < warning_rad <= buffet_rad < full_buffet_rad < 3.2, found {warning_rad}, {buffet_rad}, {full_buffet_rad}"
+    ))
 }

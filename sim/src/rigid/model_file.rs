@@ -1,5 +1,8 @@
 //! `M.toml` as it is written.
 
+use super::gear::file::{SkidFile, WheelFile};
+use super::handbook::Handbook;
+use super::power::file::{EngineFile, PropellerFile};
 use crate::case::Setting;
 use crate::table::Interpolation;
 use serde::de::{MapAccess, Visitor};
@@ -24,6 +27,15 @@ pub(super) struct ModelFile {
     pub thrust: Vec<ThrustFile>,
     #[serde(default)]
     pub daveml: Vec<DavemlFile>,
+    #[serde(default)]
+    pub wheel: Vec<WheelFile>,
+    #[serde(default)]
+    pub skid: Vec<SkidFile>,
+    pub engine: Option<EngineFile>,
+    pub propeller: Option<PropellerFile>,
+    pub fuel: Option<FuelFile>,
+    pub stall: Option<StallFile>,
+    pub handbook: Option<Handbook>,
 }
 
 /// A table's entries in the order of the file.
@@ -75,6 +87,24 @@ pub(super) struct ControlFile {
     pub max: f64,
     #[serde(default)]
     pub initial: f64,
+    /// How fast it moves, in its own unit a second; at once if left out.
+    pub per_s: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FuelFile {
+    #[serde(deserialize_with = "crate::file::exactly")]
+    pub at_m: [f64; 3],
+    pub capacity_kg: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StallFile {
+    pub warning_rad: f64,
+    pub buffet_rad: f64,
+    pub full_buffet_rad: f64,
 }
 
 #[derive(Deserialize, Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -102,6 +132,8 @@ pub(super) struct TermFile {
     pub to: String,
     pub value: Option<f64>,
     pub table: Option<String>,
+    /// Another table that it is multiplied with.
+    pub and_table: Option<String>,
     #[serde(default)]
     pub times: Vec<String>,
 }

@@ -11,12 +11,16 @@
 //!
 //! Source: B. L. Stevens, F. L. Lewis, Aircraft Control and Simulation, 2003, section 1.5 (oblate rotating Earth).
 
+use super::gear::contact::MOST_WEIGHTS;
+use super::gear::{Footing, Tread, near};
 use super::links::LinkMemory;
 use super::model::{Course, Loads, Model};
+use super::power::engine::Setting;
+use super::power::shaft::PowerPlant;
 use super::quantity::{QUANTITIES, Quantity, SLOTS};
 use crate::atmosphere::{AirSample, Atmosphere, SEA_LEVEL_DENSITY_KGPM3};
 use crate::integrate::Motion;
-use crate::planet::{Place, Planet, Shape};
+use crate::planet::{Place, Planet, STANDARD_GRAVITY_MPS2, Shape};
 use crate::wind::Wind;
 use glam::{DMat3, DQuat, DVec3};
 use std::cell::RefCell;
@@ -45,6 +49,16 @@ pub struct RigidMotion {
     pub gust_mps: DVec3,
     /// Mass of now, kg: the model's unless the caller burns fuel. The inertia stays the model's.
     pub mass_kg: f64,
+    /// Centre of gravity of now from the reference point.
+    pub cg_m: DVec3,
+    /// Speed of the engine's shaft, rad/s, held over a piece of a step; 0 without an engine of its own.
+    pub shaft_radps: f64,
+    /// Altitude of the ground under it, metres, held over a step; `None` is far below.
+    pub ground_m: Option<f64>,
+    /// Where its contacts hold the ground.
+    pub treads: Vec<Option<Tread>>,
+    /// The ground as contacts see it over a piece of a step; none in the air.
+    pub(crate) planes: Vec<Option<Footing>>,
     /// What the engines give of their thrust: 1, or 0 when they are out.
     pub thrust_share: f64,
     memory: RefCell<LinkMemory>,
@@ -109,6 +123,9 @@ pub fn is_flight(y: &State) -> bool {
     y.iter().all(|x| x.is_finite()) && velocity(y).length() <= FASTEST.0 && rates(y).length() <= FASTEST.1
 }
 
+/// Height over the ground that is told where there is none, metres.
+const FAR_ABOVE_M: f64 = 1e6;
+
 /// Components of velocity (m/s) and rates (rad/s) below this are rest: what only decays would end in denormal numbers,
 /// which are slow, and no output shows thirty digits.
 const REST: f64 = 1e-30;
@@ -130,14 +147,30 @@ impl RigidMotion {
     pub fn new(model: Arc<Model>, planet: Planet, atmosphere: Atmosphere, wind: Wind) -> Self {
         let (controls, memory, still) = (model.initial_controls(), RefCell::new(model.memory()), wind.is_still());
         let mass_kg = model.mass_kg;
-        let (gust_mps, thrust_share) = (DVec3::ZERO, 1.0);
-        Self { model, planet, atmosphere, wind, controls, gust_mps, mass_kg, thrust_share, memory, still }
+        let cg_m = model.cg_m;
+        Self {
+            model,
+            planet,
+            atmosphere,
+            wind,
+            controls,
+            gust_mps: DVec3::ZERO,
+            mass_kg,
+            cg_m,
+            shaft_radps: 0.0,
+            ground_m: None,
+            treads: Vec::new(),
+            planes: Vec::new(),
+            thrust_share: 1.0,
+            memory,
+            still,
+        }
     }
 
     /// Takes another model with the same controls.
     pub fn set_model(&mut self, model: Arc<Model>) {
         self.memory = RefCell::new(model.memory());
-        self.mass_kg = model.mass_kg;
+        (self.mass_kg, self.cg_m) = (model.mass_kg, model.cg_m);
         self.model = model;
     }
 
@@ -160,7 +193,11 @@ impl RigidMotion {
         // Latitude and longitude cost a cosine or an arc tangent; mostly the height alone is asked.
         let place = if local || !(self.still || self.flat()) {
             self.planet.place(position(y))
-        } else if !self.still || uses(Quantity::AltitudeM) || self.atmosphere.depends_on_height() {
+        } else if !self.still
+            || uses(Quantity::AltitudeM)
+            || uses(Quantity::AglM)
+            || self.atmosphere.depends_on_height()
+        {
             Place { altitude_m: self.planet.altitude_m(position(y)), ..Place::default() }
         } else {
             Place::default()
@@ -214,9 +251,17 @@ impl RigidMotion {
         set(Quantity::CrossTrackM, y[7]);
         set(Quantity::DensityKgpm3, air.density_kgpm3);
         set(Quantity::DynamicPressurePa, dynamic_pressure_pa);
+        set(Quantity::AglM, self.ground_m.map_or(FAR_ABOVE_M, |ground_m| place.altitude_m - ground_m));
 
         let mut memory = self.memory.borrow_mut();
-        let loads = model.loads(&mut slots, through_air, dynamic_pressure_pa, self.thrust_share, &mut memory);
+        let share = self.thrust_share;
+        let mut loads = model.loads(&mut slots, through_air, dynamic_pressure_pa, share, self.cg_m, &mut memory);
+        if let Some(power) = &model.power {
+            let (thrust_n, _) = power.propeller.thrust_and_torque(air.density_kgpm3, through_air.x, self.shaft_radps);
+            let force = DVec3::X * thrust_n;
+            loads.force_n += force;
+            loads.moment_nm += (power.at_m - self.cg_m).cross(force);
+        }
         Sample {
             frame_from_body,
             altitude_m: place.altitude_m,
@@ -227,6 +272,54 @@ impl RigidMotion {
             loads,
             slots,
         }
+    }
+
+    /// Force and moment of the ground on the contacts, body axes.
+    fn ground_loads(&self, y: &State) -> (DVec3, DVec3) {
+        let pose = near::pose(self, y);
+        let most_n = MOST_WEIGHTS * self.mass_kg * STANDARD_GRAVITY_MPS2;
+        let (mut force, mut moment) = (DVec3::ZERO, DVec3::ZERO);
+        for ((one, plane), tread) in self.model.contacts.iter().zip(&self.planes).zip(&self.treads) {
+            let Some(footing) = plane else { continue };
+            let Some(press) = one.press(&pose, footing, &self.controls, most_n) else { continue };
+            let pushed = one.force_n(&press, footing, tread.as_ref(), &self.controls);
+            force += pushed;
+            moment += (press.point_m - pose.position_m).cross(pushed);
+        }
+        let in_body = pose.frame_from_body.transpose();
+        (in_body * force, in_body * moment)
+    }
+
+    /// Takes the engine's shaft on by a piece of a step.
+    pub fn turn_shaft(&mut self, y: &State, dt_s: f64) {
+        if let Some((power, set, density, ahead_mps)) = self.shaft(y) {
+            self.shaft_radps = power.stepped_radps(&set, density, ahead_mps, self.shaft_radps, dt_s);
+        }
+    }
+
+    /// Gives the engine's shaft the speed at which it settles in a state.
+    pub fn settle_shaft(&mut self, y: &State) {
+        if let Some((power, set, density, ahead_mps)) = self.shaft(y) {
+            self.shaft_radps = power.settled_radps(&set, density, ahead_mps);
+        }
+    }
+
+    /// Fuel that the engine takes, kg/s; `None` without one of its own.
+    pub fn fuel_kgps(&self, y: &State) -> Option<f64> {
+        let (power, set, ..) = self.shaft(y)?;
+        Some(power.engine.fuel_kgps(&set, self.shaft_radps))
+    }
+
+    /// The engine, what it is told, the air's density and its speed along the shaft.
+    fn shaft(&self, y: &State) -> Option<(&PowerPlant, Setting, f64, f64)> {
+        let power = self.model.power.as_ref()?;
+        let altitude_m = self.planet.altitude_m(position(y));
+        let air = self.atmosphere.at(altitude_m);
+        let wind = if self.flat() { self.wind.ned_mps(altitude_m) } else { DVec3::ZERO };
+        let ahead_mps = (attitude(y).inverse() * (velocity(y) - wind)).x - self.gust_mps.x;
+        let ratio = air.density_kgpm3 / SEA_LEVEL_DENSITY_KGPM3;
+        let set = power.setting(&self.controls, ratio, self.thrust_share > 0.0);
+        Some((power, set, air.density_kgpm3, ahead_mps))
     }
 
     /// Rate of the attitude's quaternion (w, x, y, z).
@@ -269,9 +362,15 @@ impl Motion<f64, N> for RigidMotion {
         let model = &*self.model;
         let fall = self.planet.fall_mps2(position(y), velocity(y));
         let v = velocity(y);
-        let a = sample.frame_from_body * (sample.loads.force_n / self.mass_kg) + fall;
+        let (mut force, mut moment) = (sample.loads.force_n, sample.loads.moment_nm);
+        if !self.planes.is_empty() {
+            let (ground_n, ground_nm) = self.ground_loads(y);
+            force += ground_n;
+            moment += ground_nm;
+        }
+        let a = sample.frame_from_body * (force / self.mass_kg) + fall;
         let w = rates(y);
-        let turn = model.inverse_inertia * (sample.loads.moment_nm - w.cross(model.inertia_kgm2 * w));
+        let turn = model.inverse_inertia * (moment - w.cross(model.inertia_kgm2 * w));
         let [qw, qx, qy, qz] = Self::turning(y, sample.earth_rates);
         let across = self.across(sample.ned_mps);
         [v.x, v.y, v.z, qw, qx, qy, qz, across, a.x, a.y, a.z, turn.x, turn.y, turn.z]

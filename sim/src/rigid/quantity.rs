@@ -33,10 +33,11 @@ pub enum Quantity {
     CrossTrackM,
     DensityKgpm3,
     DynamicPressurePa,
+    AglM,
 }
 
 /// Number of [`Quantity`] slots; controls follow.
-pub const QUANTITIES: usize = 20;
+pub const QUANTITIES: usize = 21;
 
 /// Each quantity, its name in `M.toml`, and the names it has in AIAA S-119.
 pub const ALL: [(Quantity, &str, &[&str]); QUANTITIES] = [
@@ -60,6 +61,7 @@ pub const ALL: [(Quantity, &str, &[&str]); QUANTITIES] = [
     (Quantity::CrossTrackM, "cross_track_m", &["lateralDeviationError"]),
     (Quantity::DensityKgpm3, "density_kgpm3", &["airDensity"]),
     (Quantity::DynamicPressurePa, "dynamic_pressure_Pa", &["dynamicPressure"]),
+    (Quantity::AglM, "agl_m", &[]),
 ];
 
 impl Quantity {

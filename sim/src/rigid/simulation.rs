@@ -115,6 +115,7 @@ impl Simulation {
         if let Some(wanted) = &case.trim {
             simulation.set_found(wanted).map_err(fail)?;
         }
+        simulation.motion.settle_shaft(&simulation.y);
         simulation.stiffness = Stiffness::of(&simulation.motion, &simulation.y);
         if !simulation.y.iter().all(|x| x.is_finite()) {
             return Err(fail("initial: expected a state of finite numbers".to_owned()));
@@ -250,6 +251,7 @@ impl Simulation {
             let t_s = self.t_s + f64::from(piece) * piece_s;
             let y = integrate::step(self.integrator, &self.motion, t_s, &self.y, piece_s, &mut self.before);
             self.y = motion::normalised(y);
+            self.motion.turn_shaft(&self.y, piece_s);
             self.steps += 1;
         }
         self.t_s = until_s;

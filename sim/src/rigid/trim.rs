@@ -115,6 +115,7 @@ pub fn trim(motion: &mut RigidMotion, initial: &Initial, wanted: &Trim) -> Resul
         }
     }
     let found = problem.apply(motion, &x);
+    motion.settle_shaft(&start::state(&motion.planet, &found));
     let residuals: Vec<(&'static str, f64)> = RESIDUALS.into_iter().zip(left.iter().copied()).collect();
     if size(&left) >= HELD {
         let told: Vec<String> = residuals.iter().map(|(name, value)| format!("{name} {value:.3e}")).collect();
@@ -252,7 +253,9 @@ impl Problem<'_> {
 
     fn residuals(&self, motion: &mut RigidMotion, x: &[f64], many: usize) -> Vec<f64> {
         let initial = self.apply(motion, x);
-        accelerations(motion, &start::state(&motion.planet, &initial))[..many].to_vec()
+        let y = start::state(&motion.planet, &initial);
+        motion.settle_shaft(&y);
+        accelerations(motion, &y)[..many].to_vec()
     }
 }
 

@@ -14,11 +14,13 @@ use super::ground::{GroundTouch, SceneGround};
 use super::gun::Carriage;
 use super::surroundings::Surroundings;
 use super::{Freeze, Refused, attitude, place, speed};
-use crate::aircraft::FARTHEST_M;
+use crate::aircraft::{Condition, FARTHEST_M};
+use crate::autopilot::{Autopilot, Holds, Moves, Seen};
 use crate::ballistics::path::StepPath;
 use crate::frame::{ned_attitude_from_world, ned_from_world, world_attitude_from_ned, world_from_ned};
 use crate::integrate::{self, Integrator};
 use crate::rigid::Model;
+use crate::rigid::gear::{Met, Part, Tread, near};
 use crate::rigid::motion::{self, RigidMotion, State};
 use crate::rigid::quantity::Quantity;
 use crate::rigid::stiffness::{self, MOST_PIECES, Mode, STEPS_A_MODE, Stiffness};
@@ -79,6 +81,14 @@ pub(super) struct Body {
     pub failures: Vec<Armed>,
     gust: Option<Dryden>,
     pub ended: Option<EndReason>,
+    /// Controls that move at a rate, as they stand; empty if the model has none.
+    pub moved: Vec<f64>,
+    /// Speed of the engine's shaft, rad/s.
+    pub shaft_radps: f64,
+    /// Where its contacts hold the ground; empty far from it.
+    treads: Vec<Option<Tread>>,
+    /// Its autopilot, if one is engaged.
+    pub autopilot: Option<Autopilot>,
     pub jumps: u32,
     stiffness: Stiffness,
     mode: Mode,
@@ -88,6 +98,9 @@ pub(super) struct Body {
 }
 coded!(Stiffness { speed_mps, lambda_radps, per_flow });
 coded!(Mode { lambda_radps, flow });
+coded!(Tread { at_m, stretch_m });
+coded!(Holds { altitude_m, heading_rad, speed_mps, track });
+coded!(Autopilot { holds, integrals });
 coded!(Body {
     model,
     state,
@@ -97,6 +110,10 @@ coded!(Body {
     failures,
     gust,
     ended,
+    moved,
+    shaft_radps,
+    treads,
+    autopilot,
     jumps,
     stiffness,
     mode,
@@ -127,11 +144,15 @@ impl Body {
             model,
             state: [0.0; motion::N],
             controls: of.initial_controls(),
-            tanks: start.fuel.map(|fuel| Tanks::new(fuel, of.mass_kg)).transpose()?,
+            tanks: Tanks::of(start.fuel, &of)?,
             stores: StoresLoad::default(),
             failures: Vec::new(),
             gust: None,
             ended: None,
+            moved: if of.controls.iter().any(|one| one.per_s.is_some()) { of.initial_controls() } else { Vec::new() },
+            shaft_radps: 0.0,
+            treads: Vec::new(),
+            autopilot: None,
             jumps: 0,
             stiffness: Stiffness { speed_mps: 0.0, lambda_radps: 0.0, per_flow: 0.0 },
             mode: Mode::default(),
@@ -149,7 +170,7 @@ impl Body {
         body.relocate(start.position_m, start.velocity_mps, start.attitude, start.rates_radps, &planet)?;
         body.jumps = 0;
         body.set_turbulence(around.turbulence_mps, keys);
-        body.load(rig);
+        body.start_engine(rig);
         body.stiffness = Stiffness::of(&rig.motion, &body.state);
         Ok(body)
     }
@@ -179,7 +200,15 @@ impl Body {
             let found = self.stores.mass_kg;
             return Err(Refused::new(format_args!("body.stores: expected 0..=1e7 kg, found {found}")));
         }
-        self.tanks.as_ref().map_or(Ok(()), |tanks| tanks.check(model.mass_kg))
+        let lists = [(self.moved.len(), controls), (self.treads.len(), model.contacts.len())];
+        if let Some((found, expected)) = lists.into_iter().find(|(found, expected)| *found != 0 && found != expected) {
+            return Err(Refused::new(format_args!("body: expected a list of 0 or {expected}, found {found}")));
+        }
+        if !(0.0..1e6).contains(&self.shaft_radps) {
+            let found = self.shaft_radps;
+            return Err(Refused::new(format_args!("body.shaft_radps: expected 0 or more, found {found}")));
+        }
+        self.tanks.as_ref().map_or(Ok(()), |tanks| tanks.check(model))
     }
 
     /// Puts it into a state and lets it fly, whatever it was before.
@@ -198,6 +227,7 @@ impl Body {
         let rates = rates_radps + turned.conjugate() * planet.rotation();
         self.state = motion::normalised(motion::state(position, turned, 0.0, velocity, rates));
         (self.ended, self.looks, self.look_in) = (None, 0, 0);
+        self.treads.clear();
         self.jumps = self.jumps.wrapping_add(1);
         Ok(())
     }
@@ -243,9 +273,13 @@ impl Body {
         motion.controls.copy_from_slice(&self.controls);
         motion.gust_mps = self.gust.as_ref().map_or(DVec3::ZERO, Dryden::gust_mps);
         motion.thrust_share = 1.0;
-        motion.mass_kg = motion.model.mass_kg;
+        motion.shaft_radps = self.shaft_radps;
+        motion.treads.clone_from(&self.treads);
+        motion.planes.clear();
+        motion.ground_m = None;
+        (motion.mass_kg, motion.cg_m) = (motion.model.mass_kg, motion.model.cg_m);
         if let Some(tanks) = &self.tanks {
-            motion.mass_kg = (motion.model.mass_kg - tanks.first_kg) + tanks.fuel.fuel_kg;
+            (motion.mass_kg, motion.cg_m) = tanks.mass_and_cg(&motion.model);
             if tanks.fuel.fuel_kg == 0.0 {
                 motion.thrust_share = 0.0;
             }
@@ -261,6 +295,115 @@ impl Body {
                 Fault::Leak(_) => {}
             }
         }
+        let rated = motion.model.controls.iter().enumerate().filter(|(_, of)| of.per_s.is_some());
+        for (place, _) in rated {
+            // Restored ones have as many as there are controls.
+            motion.controls[place] = self.moved[place];
+        }
+    }
+
+    /// What its autopilot sees.
+    pub fn seen(&self, motion: &RigidMotion) -> Seen {
+        let at = self.carriage(&motion.planet);
+        let wind = motion.wind.ned_mps(motion.planet.altitude_m(motion::position(&self.state)));
+        Seen {
+            position_m: at.position_m,
+            velocity_mps: at.velocity_mps,
+            angles: crate::frame::angles(at.attitude),
+            rates_radps: at.rates_radps,
+            airspeed_mps: (motion::velocity(&self.state) - wind).length(),
+        }
+    }
+
+    /// The autopilot's step.
+    fn fly_by_itself(&mut self, motion: &RigidMotion, dt_s: f64) {
+        let seen = self.seen(motion);
+        let Some(autopilot) = &mut self.autopilot else { return };
+        let Moves { elevator, aileron, throttle } = autopilot.step(&seen, dt_s);
+        let moves = [("elevator_norm", elevator), ("aileron_norm", aileron), ("throttle_norm", throttle)];
+        for (name, part) in moves {
+            if let (Some(place), Some(part)) = (motion.model.control(name), part) {
+                let of = &motion.model.controls[place];
+                let value = if part < 0.0 { -part * of.min } else { part * of.max };
+                self.controls[place] = value.clamp(of.min, of.max);
+            }
+        }
+    }
+
+    /// Engages an autopilot that starts from the flight as it is, or takes it out.
+    pub fn engage(&mut self, holds: Option<Holds>, model: &Model) -> Result<(), Refused> {
+        let Some(holds) = holds else {
+            self.autopilot = None;
+            return Ok(());
+        };
+        if !holds.is_sound() {
+            return Err(Refused::new("autopilot: expected finite numbers, and a heading or a track, not both"));
+        }
+        let lateral = holds.heading_rad.is_some() || holds.track.is_some();
+        let needs = [
+            ("elevator_norm", holds.altitude_m.is_some()),
+            ("aileron_norm", lateral),
+            ("throttle_norm", holds.speed_mps.is_some()),
+        ];
+        if let Some((name, _)) = needs.iter().find(|(name, needed)| *needed && model.control(name).is_none()) {
+            return Err(Refused::new(format_args!("autopilot: expected a model with a control {name}, found none")));
+        }
+        let part = |name: &str| model.control(name).map_or(0.0, |place| self.controls[place]);
+        let pitch_rad = crate::frame::angles(world_attitude_from_ned(motion::attitude(&self.state))).pitch_rad;
+        let (elevator, throttle) = (part("elevator_norm"), part("throttle_norm"));
+        self.autopilot = Some(Autopilot::engaged(holds, pitch_rad.clamp(-0.17, 0.21), elevator, throttle));
+        Ok(())
+    }
+
+    /// Lets the engine turn as it would settle now.
+    pub fn start_engine(&mut self, rig: &mut Rig) {
+        self.load(rig);
+        rig.motion.settle_shaft(&self.state);
+        self.shaft_radps = rig.motion.shaft_radps;
+    }
+
+    /// Moves the controls that take their time by a step.
+    fn move_controls(&mut self, model: &Model, dt_s: f64) {
+        for place in 0..self.moved.len() {
+            let of = &model.controls[place];
+            let wanted = self.acting(place as u32).clamp(of.min, of.max);
+            let most = of.per_s.map_or(f64::INFINITY, |per_s| per_s * dt_s);
+            self.moved[place] += (wanted - self.moved[place]).clamp(-most, most);
+        }
+    }
+
+    /// Whether it flies, stands or is broken.
+    pub fn condition(&self) -> Condition {
+        match self.ended {
+            Some(_) => Condition::Crashed,
+            None if self.is_on_ground() => Condition::OnGround,
+            None => Condition::Flying,
+        }
+    }
+
+    /// Whether any of it stands on the ground.
+    pub fn is_on_ground(&self) -> bool {
+        self.treads.iter().any(Option::is_some)
+    }
+
+    /// A step near the ground; `None` where it is not near.
+    fn step_near(
+        &mut self,
+        rig: &mut Rig,
+        ground: &SceneGround,
+        dt_s: f64,
+    ) -> Option<Result<(State, Option<Met>), EndReason>> {
+        if rig.motion.model.contacts.is_empty() {
+            return None;
+        }
+        let footing = |north_m, east_m| ground.footing(north_m, east_m);
+        if !near::is_near(&rig.motion, &self.state, dt_s, &footing) {
+            self.treads.clear();
+            return None;
+        }
+        let stepped = near::step(&mut rig.motion, &self.state, dt_s, self.pieces, &footing);
+        self.treads.clone_from(&rig.motion.treads);
+        Some(stepped.ok_or(EndReason::Stiff))
     }
 
     /// How many pieces the state of now asks for.
@@ -298,7 +441,17 @@ impl Body {
 
     /// Goes on by a step.
     pub fn step(&mut self, rig: &mut Rig, ground: &SceneGround, freeze: Freeze, dt_s: f64) -> Outcome {
+        if self.autopilot.is_some() {
+            self.fly_by_itself(&rig.motion, dt_s);
+        }
+        if !self.moved.is_empty() {
+            self.move_controls(&rig.motion.model.clone(), dt_s);
+        }
         self.load(rig);
+        if rig.motion.model.uses(Quantity::AglM) {
+            let at = world_from_ned(motion::position(&self.state));
+            rig.motion.ground_m = ground.height_m(at.x, at.z);
+        }
         if self.is_outside(rig) {
             return self.end(EndReason::OutsideTable, None);
         }
@@ -310,15 +463,25 @@ impl Body {
         self.look_in -= 1;
         let from = self.state;
         let mut y = from;
-        let piece_s = dt_s / f64::from(self.pieces);
-        for _ in 0..self.pieces {
-            y = motion::normalised(integrate::step(Integrator::Rk4, &rig.motion, 0.0, &y, piece_s, &mut None));
+        match self.step_near(rig, ground, dt_s) {
+            None => {
+                let piece_s = dt_s / f64::from(self.pieces);
+                for _ in 0..self.pieces {
+                    y = motion::normalised(integrate::step(Integrator::Rk4, &rig.motion, 0.0, &y, piece_s, &mut None));
+                }
+            }
+            Some(Err(reason)) => return self.end(reason, None),
+            Some(Ok((after, None))) => y = after,
+            Some(Ok((after, Some(met)))) => return self.break_up(&after, &met),
         }
+        rig.motion.turn_shaft(&y, dt_s);
+        self.shaft_radps = rig.motion.shaft_radps;
         if !motion::is_flight(&y) {
             return self.end(EndReason::NotFinite, None);
         }
         if freeze == Freeze::Position {
             (y[0], y[1]) = (from[0], from[1]);
+            self.treads.clear();
         }
         let path = StepPath {
             from_m: world_from_ned(motion::position(&from)),
@@ -349,7 +512,8 @@ impl Body {
             return false;
         };
         let throttle = rig.throttle.map_or(0.0, |place| rig.motion.controls[place].clamp(0.0, 1.0));
-        let mut flow_kgps = tanks.fuel.flow_kgps * throttle * rig.motion.thrust_share;
+        let mut flow_kgps =
+            rig.motion.fuel_kgps(&self.state).unwrap_or(tanks.fuel.flow_kgps * throttle * rig.motion.thrust_share);
         for armed in self.failures.iter().filter(|armed| armed.active) {
             if let Fault::Leak(kgps) = armed.fault {
                 flow_kgps += kgps;
@@ -371,6 +535,30 @@ impl Body {
         let turned = motion::attitude(&self.state);
         self.state = motion::state(ned_from_world(touch.point_m), turned, 0.0, DVec3::ZERO, DVec3::ZERO);
         self.ended = Some(reason);
+        Outcome::Ended(reason, touch)
+    }
+
+    /// Ends where it is: a part met the ground too hard.
+    fn break_up(&mut self, y: &State, met: &Met) -> Outcome {
+        let reason = match met.part {
+            _ if met.is_water => EndReason::Water,
+            Part::Wheel => EndReason::Gear,
+            Part::Hull => EndReason::Hull,
+            Part::WingTip => EndReason::WingTip,
+            Part::Tail => EndReason::Tail,
+            Part::Propeller => EndReason::Propeller,
+        };
+        self.state = motion::state(motion::position(y), motion::attitude(y), 0.0, DVec3::ZERO, DVec3::ZERO);
+        self.treads.clear();
+        self.shaft_radps = 0.0;
+        self.ended = Some(reason);
+        let touch = GroundTouch {
+            fraction: met.fraction,
+            point_m: world_from_ned(met.point_m),
+            normal: world_from_ned(met.normal),
+            velocity_mps: world_from_ned(met.velocity_mps),
+            object: None,
+        };
         Outcome::Ended(reason, touch)
     }
 

@@ -10,7 +10,8 @@ use super::codec::{Coded, Reader, SaveError, coded, coded_choice};
 use super::failure::{Failure, FuelChange};
 use super::gun::Muzzle;
 use crate::aircraft::{AircraftState, Condition};
-use crate::input::{self, Controls};
+use crate::autopilot::Holds;
+use crate::input::{self, Controls, Levers};
 use crate::snapshot::StableId;
 use crate::utc::UtcTime;
 use crate::weapons::{Aim, Fuze};
@@ -147,6 +148,20 @@ pub enum Command {
         /// What they are meant for.
         aim: Aim,
     },
+    /// Levers of the own aircraft from now on.
+    Levers(Levers),
+    /// Makes a body the own aircraft, flown by the pilot's controls and levers; the own id makes it the point mass.
+    FlyBody {
+        /// Which.
+        id: StableId,
+    },
+    /// Engages the autopilot of a body, or takes it out.
+    Autopilot {
+        /// Whose.
+        id: StableId,
+        /// What it holds.
+        holds: Option<Holds>,
+    },
     /// Ends all bursts of an owner.
     CeaseFire {
         /// Whose.
@@ -164,6 +179,7 @@ pub struct Stamped {
 }
 coded!(Stamped { step, command });
 
+coded!(Levers { mixture, flaps, gear, brakes, parking_brake, trim, starter });
 coded!(Controls { pitch, roll, yaw, throttle });
 coded_choice!(Condition { Flying, OnGround, Crashed });
 coded!(UtcTime { unix_ns });
@@ -264,6 +280,9 @@ impl Coded for Command {
                 ([*rounds, *together], *interval_s).put(out);
                 aim.put(out);
             }
+            Self::Levers(levers) => (19u8, *levers).put(out),
+            Self::FlyBody { id } => (20u8, *id).put(out),
+            Self::Autopilot { id, holds } => (21u8, (*id, *holds)).put(out),
         }
     }
 
@@ -311,7 +330,13 @@ impl Coded for Command {
                 let ([rounds, together], interval_s): ([u32; 2], f64) = from.take()?;
                 Self::Release { owner, weapon, rounds, together, interval_s, aim: from.take()? }
             }
-            found => return Err(from.refuse(format_args!("command: expected 0..=18, found {found}"))),
+            19 => Self::Levers(from.take()?),
+            20 => Self::FlyBody { id: from.take()? },
+            21 => {
+                let (id, holds) = from.take()?;
+                Self::Autopilot { id, holds }
+            }
+            found => return Err(from.refuse(format_args!("command: expected 0..=21, found {found}"))),
         })
     }
 }

@@ -30,8 +30,51 @@ pub enum EndReason {
     OutsideTable,
     /// It left the bounds of any world.
     LeftWorld,
+    /// A wheel met the ground faster than its strut stands, or was driven through it.
+    Gear,
+    /// The hull struck the ground.
+    Hull,
+    /// A wing's tip struck the ground.
+    WingTip,
+    /// The tail struck the ground.
+    Tail,
+    /// The propeller struck the ground.
+    Propeller,
+    /// It met water.
+    Water,
 }
-coded_choice!(EndReason { Ground, NotFinite, Stiff, OutsideTable, LeftWorld });
+coded_choice!(EndReason {
+    Ground,
+    NotFinite,
+    Stiff,
+    OutsideTable,
+    LeftWorld,
+    Gear,
+    Hull,
+    WingTip,
+    Tail,
+    Propeller,
+    Water
+});
+
+impl EndReason {
+    /// The cause in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Ground => "flew into the ground or what stands on it",
+            Self::NotFinite => "its numbers ran away",
+            Self::Stiff => "too fast or stiff for the step",
+            Self::OutsideTable => "outside the tables of its model",
+            Self::LeftWorld => "left the world",
+            Self::Gear => "landed too hard: the gear broke",
+            Self::Hull => "the hull struck the ground",
+            Self::WingTip => "a wing tip struck the ground",
+            Self::Tail => "the tail struck the ground",
+            Self::Propeller => "the propeller struck the ground",
+            Self::Water => "came down on water",
+        }
+    }
+}
 
 /// Where a projectile struck.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,6 +9,7 @@
 use super::Refused;
 use super::codec::{Coded, LONGEST_TEXT, Reader, SaveError, coded};
 use crate::rigid::Model;
+use glam::DVec3;
 
 /// Most failures of one body at a time.
 pub const MOST_FAILURES: usize = 64;
@@ -92,8 +93,30 @@ impl Tanks {
         Ok(Self { fuel, first_kg: fuel_kg, frozen: false })
     }
 
-    pub fn check(&self, model_mass_kg: f64) -> Result<(), Refused> {
-        Self::new(Fuel { fuel_kg: self.first_kg, ..self.fuel }, model_mass_kg)?;
+    /// The tanks that a body of a model starts with: those of its start, or the model's own, full.
+    pub fn of(fuel: Option<Fuel>, model: &Model) -> Result<Option<Self>, Refused> {
+        let Some(tank) = model.tank else {
+            return fuel.map(|fuel| Self::new(fuel, model.mass_kg)).transpose();
+        };
+        let fuel = fuel.unwrap_or(Fuel { fuel_kg: tank.capacity_kg, flow_kgps: 0.0 });
+        if fuel.fuel_kg > tank.capacity_kg {
+            let (most, found) = (tank.capacity_kg, fuel.fuel_kg);
+            return Err(Refused::new(format_args!("fuel.fuel_kg: expected at most {most} kg, found {found}")));
+        }
+        Ok(Some(Self { first_kg: tank.capacity_kg, ..Self::new(fuel, model.mass_kg)? }))
+    }
+
+    /// Mass and centre of gravity with what is left.
+    pub fn mass_and_cg(&self, model: &Model) -> (f64, DVec3) {
+        match model.tank {
+            // To the bit what it was before tanks had a place.
+            None => ((model.mass_kg - self.first_kg) + self.fuel.fuel_kg, model.cg_m),
+            Some(_) => model.lighter(self.first_kg - self.fuel.fuel_kg),
+        }
+    }
+
+    pub fn check(&self, model: &Model) -> Result<(), Refused> {
+        Self::new(Fuel { fuel_kg: self.first_kg, ..self.fuel }, model.mass_kg)?;
         Self::checked_kg(self.fuel.fuel_kg).map(|_| ())
     }
 

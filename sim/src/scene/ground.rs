@@ -11,10 +11,13 @@
 use crate::HeightAt;
 use crate::ballistics::impact::{Impact, ground_impact, object_impact};
 use crate::ballistics::path::StepPath;
+use crate::frame::ned_from_world;
+use crate::rigid::gear::{Footing, Surface};
 use glam::DVec3;
 use std::fmt;
 use std::sync::Arc;
 use terrain::Area;
+use terrain::features::cover::Cover;
 use terrain::features::index::{ObjectId, ObjectIndex};
 
 /// Way between two looks at a ground that is a closure, metres: posts stand at least 25 m apart.
@@ -28,6 +31,7 @@ pub struct SceneGround {
     heights: Arc<HeightAt>,
     area: Option<Area>,
     objects: Option<Arc<ObjectIndex>>,
+    cover: Option<Arc<Cover>>,
 }
 
 /// Where a path meets the ground, or a thing that stands on it.
@@ -54,20 +58,20 @@ impl fmt::Debug for SceneGround {
 impl From<Area> for SceneGround {
     fn from(area: Area) -> Self {
         let of = area.clone();
-        Self { heights: Arc::new(move |x_m, z_m| of.height_m(x_m, z_m)), area: Some(area), objects: None }
+        Self { heights: Arc::new(move |x_m, z_m| of.height_m(x_m, z_m)), area: Some(area), objects: None, cover: None }
     }
 }
 
 impl From<Arc<HeightAt>> for SceneGround {
     fn from(heights: Arc<HeightAt>) -> Self {
-        Self { heights, area: None, objects: None }
+        Self { heights, area: None, objects: None, cover: None }
     }
 }
 
 impl SceneGround {
     /// The ground of a function of plan position (x, z).
     pub fn heights(height_m: impl Fn(f64, f64) -> Option<f64> + Send + Sync + 'static) -> Self {
-        Self { heights: Arc::new(height_m), area: None, objects: None }
+        Self { heights: Arc::new(height_m), area: None, objects: None, cover: None }
     }
 
     /// The same ground with what stands on it; without a thing it costs nothing.
@@ -75,6 +79,27 @@ impl SceneGround {
     pub fn with_objects(mut self, objects: Arc<ObjectIndex>) -> Self {
         self.objects = (!objects.is_empty()).then_some(objects);
         self
+    }
+
+    /// The same ground with what covers it: how wheels hold and roll. Without it the ground is paved.
+    #[must_use]
+    pub fn with_cover(mut self, cover: Arc<Cover>) -> Self {
+        self.cover = Some(cover);
+        self
+    }
+
+    /// The ground under a point as wheels see it, north, east, down from the world's origin; `None` over void.
+    pub(super) fn footing(&self, north_m: f64, east_m: f64) -> Option<Footing> {
+        let (x_m, z_m) = (east_m, -north_m);
+        let (height_m, normal) = match &self.area {
+            Some(area) => area.height_and_normal(x_m, z_m)?,
+            None => {
+                let height_m = self.height_m(x_m, z_m)?;
+                (height_m, self.slope(DVec3::new(x_m, height_m, z_m)))
+            }
+        };
+        let surface = self.cover.as_ref().map_or(Surface::PAVED, |cover| Surface::of(cover.class_at(x_m, z_m)));
+        Some(Footing { point_m: DVec3::new(north_m, east_m, -height_m), normal: ned_from_world(normal), surface })
     }
 
     /// No ground anywhere.

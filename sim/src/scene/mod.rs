@@ -2,6 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `flown.rs` | the own aircraft as one of the bodies |
 //! | `own.rs` | the own aircraft: piloted, on its track, slewed |
 //! | `body.rs`, `failure.rs` | rigid bodies, their failures and fuel |
 //! | `shell.rs`, `gun.rs` | projectiles, and how they are fired |
@@ -30,6 +31,7 @@ mod crew;
 mod effects;
 mod event;
 mod failure;
+mod flown;
 mod ground;
 mod gun;
 mod orders;
@@ -52,6 +54,7 @@ pub use command::{Command, Freeze, Stamped};
 pub use crew::RIPPLE_S;
 pub use event::{EndReason, Event, Happening, KEPT_S, MOST_KEPT, Strike};
 pub use failure::{Failure, Fuel, FuelChange, MOST_FAILURES};
+pub use flown::Instruments;
 pub use ground::{GroundTouch, LOOK_M, SceneGround};
 pub use gun::{MOST_PER_MINUTE, Muzzle};
 pub use route::{MOST_WAYPOINTS, SHORTEST_LEG_M};
@@ -67,7 +70,7 @@ use crate::aircraft::point_mass::PointMass;
 use crate::aircraft::{self, AircraftState, FARTHEST_M};
 use crate::ballistics::targets::Target;
 use crate::clock::{Clock, DEFAULT_STEP_HZ};
-use crate::input::Controls;
+use crate::input::{Controls, Levers};
 use crate::snapshot::{Mode, StableId};
 use crate::track::Track;
 use crate::utc::UtcTime;
@@ -119,6 +122,9 @@ pub struct Scene {
     model: PointMass,
     start: AircraftState,
     controls: Controls,
+    levers: Levers,
+    /// The body that is the own aircraft, if it is one.
+    flown: Option<StableId>,
     track: Option<Track>,
     track_m: f64,
     mode: Mode,
@@ -205,6 +211,8 @@ impl Scene {
             model: PointMass::default(),
             start,
             controls,
+            levers: Levers::default(),
+            flown: None,
             track: None,
             track_m: 0.0,
             mode: Mode::Pilot,

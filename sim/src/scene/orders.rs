@@ -94,6 +94,9 @@ impl Scene {
         match command {
             Command::Pilot(command) => self.pilot(*command),
             Command::Controls(controls) => self.controls = controls.checked(),
+            Command::Levers(levers) => self.levers = levers.checked(),
+            Command::FlyBody { id } => self.fly(*id)?,
+            Command::Autopilot { id, holds } => self.change_body(*id, |body, model| body.engage(*holds, model))?,
             Command::Place(state) => self.put(**state),
             Command::SeekTrack(distance_m) => self.seek(*distance_m),
             Command::Date(date) => self.clock.set_date(*date),

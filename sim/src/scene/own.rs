@@ -8,7 +8,7 @@ use crate::aircraft::{self, AircraftState, Condition};
 use crate::atmosphere::Air;
 use crate::clock::Clock;
 use crate::frame::world_from_ned;
-use crate::input::{self, Controls};
+use crate::input::{self, Controls, Levers};
 use crate::slew::{SlewRates, slew};
 use crate::snapshot::Mode;
 use crate::track::Track;
@@ -55,6 +55,7 @@ impl Scene {
             let state = aircraft::checked(&self.aircraft(), state);
             self.jumps = self.jumps.wrapping_add(1);
             self.set_aircraft(state);
+            self.seat_flown();
         }
     }
 
@@ -62,6 +63,12 @@ impl Scene {
     pub fn set_controls(&mut self, controls: Controls) {
         // Checked controls are never refused.
         let _ = self.order(Command::Controls(controls.checked()));
+    }
+
+    /// Levers of the pilot from now on.
+    pub fn set_levers(&mut self, levers: Levers) {
+        // Checked levers are never refused.
+        let _ = self.order(Command::Levers(levers.checked()));
     }
 
     /// Carries out a pilot's command. Those that concern only the picture (screenshot, overlays, looking) do nothing here.
@@ -180,5 +187,6 @@ impl Scene {
         let speed_mps = self.start.airspeed_mps.clamp(120.0, 300.0);
         let level = AircraftState::level(now.position_m, now.angles().heading_rad, speed_mps);
         self.set_aircraft(AircraftState { throttle: now.throttle, ..level });
+        self.seat_flown();
     }
 }

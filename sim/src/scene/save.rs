@@ -19,7 +19,7 @@ use super::{
 };
 use crate::aircraft::AircraftState;
 use crate::clock::Clock;
-use crate::input::Controls;
+use crate::input::{Controls, Levers};
 use crate::snapshot::{Mode, StableId};
 use crate::utc::UtcTime;
 use crate::weapons::Tally;
@@ -50,6 +50,7 @@ impl Scene {
         (self.controls, self.track_m).put(&mut out);
         (self.mode, self.freeze).put(&mut out);
         (self.height_above_ground_m, self.jumps).put(&mut out);
+        (self.levers, self.flown).put(&mut out);
         self.surroundings.put(&mut out);
         (self.next_id, self.unsettled).put(&mut out);
         self.put_all::<Body>(&self.bodies, &mut out);
@@ -102,6 +103,7 @@ impl Scene {
         let (controls, track_m): (Controls, f64) = from.take()?;
         let (mode, freeze): (Mode, Freeze) = from.take()?;
         let (height_above_ground_m, jumps) = from.take()?;
+        let (levers, flown): (Levers, Option<StableId>) = from.take()?;
         let surroundings: Surroundings = from.take()?;
         let mut scene = Self::within(start, clock.date(), clock.step_hz, surroundings, catalogue);
         for state in [&start, &own] {
@@ -118,7 +120,11 @@ impl Scene {
             return Err(from.refuse(format_args!("expected a next id in 2..={MOST_COUNTED}, found {next_id}")));
         }
         scene.next_id = next_id;
+        (scene.levers, scene.flown) = (levers.checked(), flown);
         scene.take_entities(&mut from)?;
+        if flown.is_some_and(|id| super::found(&scene.bodies, id).is_none()) {
+            return Err(from.refuse("flown: expected a body of the scene"));
+        }
         scene.unsettled = unsettled;
         scene.take_rest(&mut from)?;
         if from.left() != 8 {

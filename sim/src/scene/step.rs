@@ -15,7 +15,7 @@ use super::shell::{Fate, Range, Shell};
 use super::target::TargetState;
 use super::{Freeze, Scene, SceneGround, found};
 use crate::ballistics::targets::Pose;
-use crate::snapshot::StableId;
+use crate::snapshot::{Mode, StableId};
 use glam::{DVec2, DVec3};
 
 /// A round that hit: the target, the owner and the owner's round.
@@ -40,8 +40,18 @@ impl Scene {
         }
         let before: Vec<Option<Carriage>> = self.bursts.iter().map(|burst| self.carriage(burst.owner)).collect();
         if self.freeze != Freeze::Flight {
-            self.step_own(ground.height_at(), dt_s);
-            self.step_bodies(ground, from_s, dt_s);
+            match self.piloted() {
+                Some(body) => {
+                    self.command_flown(body);
+                    self.step_bodies(ground, from_s, dt_s);
+                    self.follow_flown(body, dt_s);
+                }
+                None => {
+                    self.step_own(ground.height_at(), dt_s);
+                    self.seat_flown();
+                    self.step_bodies(ground, from_s, dt_s);
+                }
+            }
         }
         self.step_targets(ground, dt_s);
         self.step_shells(ground, &before, from_s, dt_s);
@@ -95,9 +105,14 @@ impl Scene {
             return;
         }
         self.views.bodies.take();
+        let carried = self.flown.filter(|_| self.mode != Mode::Pilot);
         let (step, freeze, log) = (self.clock.step() - 1, self.freeze, &mut self.log);
         let mut all = self.ecs.view_mut::<&mut Body>();
         for &(id, entity) in &self.bodies {
+            // A body that is carried along with the own aircraft does not fly by itself.
+            if carried == Some(id) {
+                continue;
+            }
             let Some(body) = all.get_mut(entity).filter(|body| body.ended.is_none()) else { continue };
             if !body.failures.is_empty() {
                 body.set_in(step, |name| log.add(from_s, Happening::Failure { id, name: name.to_owned() }));

@@ -148,6 +148,7 @@ impl Scene {
             events: self.recent_events(),
             events_counted: self.log.counted,
             events_chain: self.log.chain,
+            instruments: self.instruments(),
         }
     }
 
@@ -180,7 +181,7 @@ impl Scene {
             position_m: at.position_m,
             attitude: at.attitude,
             velocity_mps: at.velocity_mps,
-            condition: if body.ended.is_some() { Condition::Crashed } else { Condition::Flying },
+            condition: body.condition(),
             hits: 0,
             damage: Damage::Intact,
             burning: false,

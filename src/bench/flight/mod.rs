@@ -101,10 +101,11 @@ pub fn bench(area: &Area, load: Load) -> Result<Flown, Failure> {
         let air = &flight.motion.atmosphere;
         times.air.push(4.0 * each_ns(load.steps, || air.at(black_box(914.0))));
         let sample = flight.motion.sample(flight.state(), false);
+        let cg_m = flight.motion.cg_m;
         let (mut memory, mut slots) = (flight.motion.model.memory(), sample.slots);
         times.loads.push(
             4.0 * each_ns(load.steps, || {
-                flight.motion.model.loads(black_box(&mut slots), sample.through_air, 1_500.0, 1.0, &mut memory)
+                flight.motion.model.loads(black_box(&mut slots), sample.through_air, 1_500.0, 1.0, cg_m, &mut memory)
             }),
         );
         times.shell.push(shell.step_ns(load.steps)?);
