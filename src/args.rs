@@ -104,8 +104,8 @@ pub struct FlyArgs {
     /// The world [default: the embedded one].
     #[arg(long, value_name = "W")]
     pub world: Option<PathBuf>,
-    /// A scenario file. Not listed: this version reads none, and says so.
-    #[arg(long, value_name = "S", hide = true)]
+    /// Fly a situation: circuit, valley or range (on the embedded world), or a file of one. Headless its script flies.
+    #[arg(long, value_name = "S", conflicts_with_all = ["eye", "heading_deg", "speed_mps"])]
     pub scenario: Option<PathBuf>,
     /// Open no window: fly the built-in track and take pictures.
     #[arg(long)]

@@ -7,7 +7,7 @@ pub mod actors;
 pub mod cameras;
 pub mod effects;
 
-use crate::hud::{self, Anchor, HudInput, Instruments, Sight, Store, WeaponPage};
+use crate::hud::{self, Anchor, Engine, HudInput, Instruments, Sight, Store, WeaponPage};
 use crate::scenery::{self, Heavens, Scenery};
 use actors::Cast;
 use cameras::{Camera, Cameras};
@@ -42,14 +42,12 @@ pub fn height_at(area: &Area) -> Arc<HeightAt> {
     Arc::new(move |x_m, z_m| area.height_m(x_m, z_m))
 }
 
-/// The eye, world metres.
-pub fn eye_m(snapshot: &Snapshot) -> DVec3 {
-    snapshot.aircraft.position_m
-}
-
 /// View axes to the world's, for a head turned from the nose.
 pub fn attitude(snapshot: &Snapshot, head: &Head) -> DQuat {
     let nose = sim::frame::view_attitude(snapshot.aircraft.attitude);
+    // Before and in the stall the airframe shakes: the picture, not the flight.
+    let [up_rad, right_rad] = snapshot.instruments.map_or([0.0; 2], |of| of.shake_rad(snapshot.time_s));
+    let nose = nose * DQuat::from_rotation_x(up_rad) * DQuat::from_rotation_z(-right_rad);
     (nose * DQuat::from_rotation_y(-head.right_rad) * DQuat::from_rotation_x(head.up_rad)).normalize()
 }
 
@@ -140,6 +138,33 @@ fn release(page: &scene::WeaponPage) -> String {
     }
 }
 
+/// What a rigid body's instruments show; a point mass has none but its angle of attack.
+fn instruments(snapshot: &Snapshot) -> Instruments {
+    let Some(of) = &snapshot.instruments else { return Instruments::default() };
+    let levers = &snapshot.levers;
+    let shown = |[now, most]: [f64; 2]| (most > 0.0).then_some([now, most]);
+    Instruments {
+        side_g: Some(of.side_g),
+        alpha_rad: (snapshot.aircraft.airspeed_mps > 10.0).then_some(snapshot.aircraft.alpha_rad),
+        stalling: of.stall_warning,
+        // Where the station's pressure is not told apart from the standard's, the altimeter needs no setting.
+        qnh_pa: None,
+        engine: shown(of.rpm).map(|[rpm, most_rpm]| Engine {
+            rpm,
+            most_rpm,
+            throttle: snapshot.controls.throttle,
+            mixture: Some(levers.mixture),
+            running: rpm > 100.0,
+        }),
+        fuel_kg: shown(of.fuel_kg),
+        flaps_rad: shown(of.flaps).map(|flaps| flaps.map(f64::to_radians)),
+        trim: Some(levers.trim),
+        gear: None,
+        brakes: Some(levers.brakes[0].max(levers.brakes[1])),
+        parked: levers.parking_brake > 0.5,
+    }
+}
+
 /// The prediction of a page in the axes of a view: a gun's pipper at its range, else the point of impact.
 fn sight<'a>(page: &scene::WeaponPage, view: &View) -> Sight<'a> {
     let in_view_m = |at_m: DVec3| (view.attitude.inverse() * (at_m - view.eye_m)).to_array();
@@ -208,7 +233,7 @@ pub fn hud(world: &World, snapshot: &Snapshot, seen: &Seen, heavens: &Heavens, c
         hint: captions.hint,
         viewport_px: (view.size_px[0], view.size_px[1]),
         fov_y_rad: (view.top.atan() - view.bottom.atan()),
-        instruments: Instruments::default(),
+        instruments: instruments(snapshot),
         weapons,
         brightness: brightness(heavens),
         looking_ahead: seen.ahead,
@@ -255,6 +280,5 @@ mod tests {
         assert!((looks(0.0, 0.0) - DVec3::NEG_Z).length() < 1e-12);
         assert!((looks(std::f64::consts::FRAC_PI_2, 0.0) - DVec3::X).length() < 1e-12);
         assert!((looks(0.3, 0.4) - terrain::frame::direction(0.3, 0.4)).length() < 1e-12);
-        assert_eq!(eye_m(&snapshot), DVec3::new(0.0, 3e3, 0.0));
     }
 }

@@ -32,6 +32,7 @@ pub mod random;
 pub mod rigid;
 pub mod run;
 pub mod scene;
+pub mod situation;
 pub mod slew;
 pub mod snapshot;
 pub mod table;

@@ -4,7 +4,7 @@
 //! but the state and the inputs before it.
 
 use crate::aircraft::AircraftState;
-use crate::input::Controls;
+use crate::input::{Controls, Levers};
 use crate::scene::{EntityView, Event, FNV_BASIS, Instruments, WeaponPage, fnv, interpolated};
 use crate::utc::UtcTime;
 use glam::DQuat;
@@ -82,6 +82,8 @@ pub struct Snapshot {
     pub events_counted: u64,
     /// A hash over all of them.
     pub events_chain: u64,
+    /// Levers as the pilot has set them. Not part of the hash: what they do is.
+    pub levers: Levers,
     /// Instruments of an own aircraft that is a rigid body. Not part of the hash: they follow from the rest.
     pub instruments: Option<Instruments>,
 }

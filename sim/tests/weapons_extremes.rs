@@ -8,8 +8,9 @@ use glam::{DVec2, DVec3};
 use sim::aircraft::AircraftState;
 use sim::frame::{Angles, attitude};
 use sim::scene::{CONTACT_M, Command, Freeze, Happening, Height, Scene, SceneGround, TargetStart};
+use sim::situation::{BUILTIN, Situation};
 use sim::snapshot::StableId;
-use sim::weapons::range::{BUILTIN, Range};
+
 use sim::weapons::{Aim, Damage, Fuze, Outcome, TargetKind, Trigger, builtin};
 use sim::{Snapshot, UtcTime};
 use std::path::Path;
@@ -154,9 +155,10 @@ fn targets_on_a_slope_of_45_degrees_on_a_bridge_and_at_100_mps_are_struck_where_
 fn the_embedded_range_is_flown_on_the_embedded_world() {
     let world = terrain::bake::default_world(&mut |_, _| {}).unwrap().world;
     let ground = SceneGround::from(Ground::new(world.field.clone()).whole());
-    let range = Range::from_text(Path::new("range.toml"), BUILTIN).unwrap();
+    let range_text = BUILTIN.iter().find(|(name, _)| *name == "range").unwrap().1;
+    let range = Situation::builtin("range").unwrap();
     let date = UtcTime::parse("2026-06-21T06:00:00Z").unwrap();
-    let begin = || range.scene(&world, date, 120, Default::default()).unwrap();
+    let begin = || range.scene(&world, date, 120, Default::default(), false).unwrap();
     let mut scene = begin();
     assert_eq!(scene.counts(), [0, 0, 13]);
     let (last, _) = run(&mut scene, &ground, 240);
@@ -177,18 +179,18 @@ fn the_embedded_range_is_flown_on_the_embedded_world() {
     let (again, _) = run(&mut begin(), &ground, 240);
     assert_eq!(again.hash(), last.hash());
     for (wrong, told) in [
-        (BUILTIN.replace("kind = \"radar\"", "kind = \"zeppelin\""), "target[2]: target: expected one of [truck"),
-        (BUILTIN.replace("[42.30, 77.20]", "[42.10, 77.20]"), "convoy[1]: expected a place on a lake"),
-        (BUILTIN.replace("weapon = \"gsh23\"", "weapon = \"bow\""), "own.station[0]: weapon: expected one of"),
-        (BUILTIN.replace("lon_deg = 77.28\n", "lon_deg = 17.28\n"), "target[0]: expected a place on the world"),
-        (BUILTIN.replace("altitude_m = 4000.0", "altitude_m = 1000.0"), "wind: expected a height above 1600"),
-        (BUILTIN.replace("spacing_m = 40.0", "spacing = 40.0"), "spacing"),
-        (BUILTIN.replace("speed_mps = 8.0", "speed_mps = 80.0"), "convoy[1]: target.speed_mps: expected at most 15"),
+        (range_text.replace("kind = \"radar\"", "kind = \"zeppelin\""), "target[2]: target: expected one of [truck"),
+        (range_text.replace("[42.30, 77.20]", "[42.10, 77.20]"), "convoy[1]: expected a place on a lake"),
+        (range_text.replace("weapon = \"gsh23\"", "weapon = \"bow\""), "own.station[0]: weapon: expected one of"),
+        (range_text.replace("lon_deg = 77.28\n", "lon_deg = 17.28\n"), "target[0]: expected a place on the world"),
+        (range_text.replace("altitude_m = 4000.0", "altitude_m = 1000.0"), "wind: expected a height above 1600"),
+        (range_text.replace("spacing_m = 40.0", "spacing = 40.0"), "spacing"),
+        (range_text.replace("speed_mps = 8.0", "speed_mps = 80.0"), "convoy[1]: target.speed_mps: expected at most 15"),
     ] {
-        let read = Range::from_text(Path::new("range.toml"), &wrong);
+        let read = Situation::from_text(Path::new("range.toml"), &wrong);
         let told_of = match read {
             Err(error) => error.to_string(),
-            Ok(range) => range.scene(&world, date, 120, Default::default()).err().unwrap().to_string(),
+            Ok(range) => range.scene(&world, date, 120, Default::default(), false).err().unwrap().to_string(),
         };
         assert!(told_of.contains(told), "{told}: {told_of}");
     }

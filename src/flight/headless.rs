@@ -9,7 +9,7 @@ use crate::args::FlyArgs;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::report::Fly;
-use crate::scenery::{self, Look, Scenery};
+use crate::scenery::{Look, Scenery};
 use crate::stage::{self, Captions, Seat, Sun};
 use sim::clock::DEFAULT_STEP_HZ;
 use std::sync::Arc;
@@ -33,9 +33,10 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
     scenery.use_models_of(args.world.as_deref())?;
     let length = Length::of(args, true);
     let plan = Plan::new(args, length, LOCKSTEP_HZ, &world, &scenery.area)?;
-    let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
+    let length = length.scripted(args, &plan);
+    let date = plan.date(args, &world)?;
     let ground = scenery.scene_ground();
-    let mut scene = plan.scene(date);
+    let mut scene = plan.scene(&world, date, args.inputs.is_none())?;
     inputs::prepare(args, &mut scene)?;
     let mut seat = Seat::new(&world, &scene, args.camera);
     let mut sun = Sun::new(&world, date)?;
@@ -78,7 +79,7 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
         sim_hash: sim_hash.shown(),
     };
     let mut report = record.report(&scenery, &ending);
-    let mut taken = pictures::take(scenery, &plan, date, args.camera, &args.shots)?;
+    let mut taken = pictures::take(scenery, &plan, args, date)?;
     taken.hash.add(last.hash());
     report.image_hash = Some(taken.hash.shown());
     report.shots = taken.files.iter().map(|file| file.display().to_string()).collect();

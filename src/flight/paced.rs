@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use crate::output;
 use crate::progress::Progress;
 use crate::report::{self, Fly};
-use crate::scenery::{self, Look, Scenery};
+use crate::scenery::{Look, Scenery};
 use crate::stage::{self, Captions, Seat, Sun};
 use sim::SimThread;
 use sim::run::Message;
@@ -42,9 +42,10 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     scenery.use_models_of(args.world.as_deref())?;
     let length = Length::of(args, true);
     let plan = Plan::new(args, length, hz, &world, &scenery.area)?;
-    let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
+    let length = length.scripted(args, &plan);
+    let date = plan.date(args, &world)?;
     let ground = scenery.scene_ground();
-    let mut scene = plan.scene(date);
+    let mut scene = plan.scene(&world, date, args.inputs.is_none())?;
     inputs::prepare(args, &mut scene)?;
     let mut seat = Seat::new(&world, &scene, args.camera);
     sim::lockstep(&mut scene, &ground, 1);
@@ -108,7 +109,7 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     }
     let ending = Ending { mode: "paced", flown_s, steps: last.step, sim_hash: report::hash(last.hash()) };
     let mut report = record.report(&scenery, &ending);
-    let taken = pictures::take(scenery, &plan, date, args.camera, &args.shots)?;
+    let taken = pictures::take(scenery, &plan, args, date)?;
     report.image_hash = Some(taken.hash.shown());
     report.shots = taken.files.iter().map(|file| file.display().to_string()).collect();
     Ok(report)

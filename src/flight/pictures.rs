@@ -1,16 +1,21 @@
-//! Pictures along the track: one each at its places, and a contact sheet of all.
+//! Pictures along the track or of a situation's moments, and a contact sheet of all.
 //!
 //! Taken after the flight by a scenery of their own that waits for every block, so that they do not depend on how far was
 //! flown or on the machine's speed; nothing in them is measured time.
 
 use super::device_failed;
-use super::plan::{PicturePlace, Plan};
+use super::inputs;
+use super::plan::Plan;
 use super::record::RunningHash;
+use crate::args::FlyArgs;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::scenery::{Look, Scenery};
 use crate::stage::cameras::Camera;
+use crate::stage::effects::Effects;
 use crate::stage::{self, Captions, Seat, Sun};
+use sim::situation::Moment;
+use sim::{Snapshot, UtcTime};
 use std::path::{Path, PathBuf};
 use visual::capture::{self, Offscreen, Picture};
 
@@ -30,50 +35,117 @@ pub struct Taken {
     pub hash: RunningHash,
 }
 
-/// Takes the plan's pictures at a date into a folder, on the device of the flight's scenery, which ends here.
+/// Steps between two looks for events, which are told for a while only.
+const STEPS_A_LOOK: u32 = 30;
+
+/// Takes the plan's pictures at a date, on the device of the flight's scenery, which ends here. A situation is flown once
+/// more, by its script or by the inputs that are played.
 ///
 /// # Errors
 /// [`Failure::Failed`] if the device fails or a file cannot be written.
-pub fn take(flown: Scenery, plan: &Plan, date: sim::UtcTime, camera: Camera, folder: &Path) -> Result<Taken, Failure> {
-    let bar = Progress::new("taking pictures");
+pub fn take(flown: Scenery, plan: &Plan, args: &FlyArgs, date: UtcTime) -> Result<Taken, Failure> {
     let own_models = flown.things.own_models().to_vec();
-    let Scenery { gpu, world, look, .. } = flown;
-    let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), Look { wait: true, keep_depth: false, ..look });
-    let gpu = scenery.gpu.clone();
+    let (gpu, world, look) = (flown.gpu.clone(), flown.world.clone(), flown.look);
+    drop(flown);
+    let look = Look { wait: true, keep_depth: false, ..look };
+    let mut scenery = Scenery::new(gpu.clone(), capture::FORMAT, world.clone(), look);
     scenery.things.use_models(&gpu, own_models);
-    let size_px = look.size_px;
-    let target = Offscreen::new(&scenery.gpu, size_px).map_err(device_failed)?;
     let ground = scenery.scene_ground();
-    let mut scene = plan.scene(date);
-    let heavens = Sun::new(&world, date)?.at(&world, date);
-    let mut seat = Seat::new(&world, &scene, camera);
-    let shrink = (COLUMNS * size_px[0]).div_ceil(SHEET_PX).max(1);
-    let mut taken = Taken::default();
-    let mut small = Vec::new();
-    for (number, place) in plan.pictures.iter().enumerate() {
-        bar.show(number as f64 / plan.pictures.len() as f64);
-        scene.seek_track(place.distance_m);
-        // A step keeps a track that runs under the ground above it.
-        let snapshot = sim::lockstep(&mut scene, &ground, 1);
-        let seen = seat.view(&mut scenery, &snapshot, size_px);
-        let view = &seen.view;
+    let mut scene = plan.scene(&world, date, args.inputs.is_none())?;
+    inputs::prepare(args, &mut scene)?;
+    let mut album = Album {
+        bar: Progress::new("taking pictures"),
+        seat: Seat::new(&world, &scene, args.camera),
+        effects: Effects::default(),
+        sun: Sun::new(&world, date)?,
+        target: Offscreen::new(&scenery.gpu, look.size_px).map_err(device_failed)?,
+        scenery,
+        folder: &args.shots,
+        taken: Taken::default(),
+        small: Vec::new(),
+    };
+    match plan {
+        Plan::Track { pictures, .. } => {
+            for (number, place) in pictures.iter().enumerate() {
+                album.bar.show(number as f64 / pictures.len() as f64);
+                scene.seek_track(place.distance_m);
+                // A step keeps a track that runs under the ground above it.
+                let snapshot = sim::lockstep(&mut scene, &ground, 1);
+                album.add(&snapshot, &place.name)?;
+            }
+        }
+        Plan::Situation(situation) => {
+            let hz = f64::from(scene.clock.step_hz());
+            let mut moments = situation.moments().to_vec();
+            moments.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
+            if moments.is_empty() {
+                moments.push(Moment { at_s: 0.0, name: situation.name().to_owned(), camera: None });
+            }
+            for (number, moment) in moments.iter().enumerate() {
+                album.bar.show(number as f64 / moments.len() as f64);
+                let at = (moment.at_s * hz).round() as u64;
+                while scene.clock.step() < at {
+                    let steps = (at - scene.clock.step()).min(u64::from(STEPS_A_LOOK)) as u32;
+                    let snapshot = sim::lockstep(&mut scene, &ground, steps);
+                    album.effects.of(&snapshot);
+                }
+                let camera = moment.camera.as_deref().map_or(Ok(args.camera), |name| {
+                    <Camera as clap::ValueEnum>::from_str(name, true).map_err(|_| {
+                        Failure::Failed(format!("picture {}: expected a camera, found {name}", moment.name))
+                    })
+                })?;
+                album.seat.cameras.set(camera);
+                let snapshot = sim::lockstep(&mut scene, &ground, 1);
+                album.add(&snapshot, &moment.name)?;
+            }
+        }
+    }
+    album.bound()
+}
+
+/// Pictures as they come.
+struct Album<'a> {
+    bar: Progress,
+    scenery: Scenery,
+    seat: Seat,
+    effects: Effects,
+    sun: Sun,
+    target: Offscreen,
+    folder: &'a Path,
+    taken: Taken,
+    small: Vec<Picture>,
+}
+
+impl Album<'_> {
+    fn add(&mut self, snapshot: &Snapshot, name: &str) -> Result<(), Failure> {
+        let size_px = self.scenery.look.size_px;
+        let scenery = &mut self.scenery;
+        scenery.things.set_particles(self.effects.of(snapshot));
+        let seen = self.seat.view(scenery, snapshot, size_px);
+        let world = scenery.world.clone();
+        let heavens = self.sun.at(&world, snapshot.date);
         for _ in 0..MOST_UPDATES {
-            scenery.follow(view, 0.0, heavens);
+            scenery.follow(&seen.view, 0.0, heavens);
             if !scenery.terrain.window().is_jumping() && scenery.terrain.window().late_blocks() == 0 {
                 break;
             }
         }
         let captions = Captions { frame_ms: f64::NAN, ..Captions::default() };
-        let hud = stage::hud(&world, &snapshot, &seen, &heavens, captions);
-        scenery.draw(view, heavens, snapshot.time_s, hud, &target.view).map_err(device_failed)?;
-        let picture = target.read(&scenery.gpu).map_err(device_failed)?;
-        taken.hash.add(picture.hash());
-        taken.files.push(write(&picture, folder, &file_name(number + 1, place))?);
-        small.push(Picture::contact_sheet(&[picture], 1, shrink));
+        let hud = stage::hud(&world, snapshot, &seen, &heavens, captions);
+        scenery.draw(&seen.view, heavens, snapshot.time_s, hud, &self.target.view).map_err(device_failed)?;
+        let picture = self.target.read(&scenery.gpu).map_err(device_failed)?;
+        self.taken.hash.add(picture.hash());
+        self.taken.files.push(write(&picture, self.folder, &file_name(self.taken.files.len() + 1, name))?);
+        let shrink = (COLUMNS * size_px[0]).div_ceil(SHEET_PX).max(1);
+        self.small.push(Picture::contact_sheet(&[picture], 1, shrink));
+        Ok(())
     }
-    let sheet = Picture::contact_sheet(&small, COLUMNS.min(small.len() as u32), 1);
-    taken.files.push(write(&sheet, folder, "contact-sheet.png")?);
-    Ok(taken)
+
+    fn bound(mut self) -> Result<Taken, Failure> {
+        let sheet = Picture::contact_sheet(&self.small, COLUMNS.min(self.small.len() as u32), 1);
+        self.taken.files.push(write(&sheet, self.folder, "contact-sheet.png")?);
+        Ok(self.taken)
+    }
 }
 
 fn write(picture: &Picture, folder: &Path, name: &str) -> Result<PathBuf, Failure> {
@@ -83,8 +155,8 @@ fn write(picture: &Picture, folder: &Path, name: &str) -> Result<PathBuf, Failur
 }
 
 /// `3-central-tian-shan.png`: letters and digits, the rest as dashes.
-fn file_name(number: usize, place: &PicturePlace) -> String {
-    let words = place.name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+fn file_name(number: usize, name: &str) -> String {
+    let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     let words: Vec<String> = words.map(str::to_ascii_lowercase).collect();
     format!("{number}-{}.png", words.join("-"))
 }
@@ -95,8 +167,7 @@ mod tests {
 
     #[test]
     fn names_are_plain_and_in_order() {
-        let place = |name: &str| PicturePlace { distance_m: 0.0, name: name.to_owned() };
-        assert_eq!(file_name(3, &place("central Tian Shan")), "3-central-tian-shan.png");
-        assert_eq!(file_name(1, &place("../12.5 km")), "1-12-5-km.png");
+        assert_eq!(file_name(3, "central Tian Shan"), "3-central-tian-shan.png");
+        assert_eq!(file_name(1, "../12.5 km"), "1-12-5-km.png");
     }
 }

@@ -1,7 +1,8 @@
 //! What is flown: the track, for how long, and where pictures are taken.
 //!
 //! The embedded world has a scenic flight. A start, a heading or a speed that is asked for, or another world, gives a
-//! straight track: from the place asked for, or along a diagonal through the world's middle.
+//! straight track: from the place asked for, or along a diagonal through the world's middle. A scenario that is named is
+//! flown by its pilot in a window, else by its script.
 
 use crate::args::FlyArgs;
 use crate::failure::Failure;
@@ -11,8 +12,12 @@ use crate::stage;
 use crate::values::Altitude;
 use glam::DVec3;
 use sim::aircraft::{ALTITUDE_M, AircraftState};
+use sim::clock::DEFAULT_STEP_HZ;
+use sim::scene::Catalogue;
+use sim::situation::{BUILTIN, Situation};
 use sim::track::{Flight, ISSYK_KUL_FLIGHT, TrackError, TrackHeight};
-use sim::{Scene, Track};
+use sim::{Scene, Track, UtcTime};
+use std::path::Path;
 use terrain::store::World;
 use terrain::{Area, Geodetic};
 
@@ -50,12 +55,17 @@ pub struct PicturePlace {
 }
 
 /// What is flown.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
-    /// The way.
-    pub track: Track,
-    /// Where pictures are taken, however far is flown.
-    pub pictures: Vec<PicturePlace>,
+#[derive(Debug, Clone)]
+pub enum Plan {
+    /// A track through the world.
+    Track {
+        /// The way.
+        track: Track,
+        /// Where pictures are taken, however far is flown.
+        pictures: Vec<PicturePlace>,
+    },
+    /// A situation, flown by its pilot or its script.
+    Situation(Box<Situation>),
 }
 
 impl Length {
@@ -66,6 +76,18 @@ impl Length {
             (None, Some(seconds_s)) => Self::Seconds(seconds_s),
             (None, None) if headless => Self::Seconds(HEADLESS_S),
             (None, None) => Self::Endless,
+        }
+    }
+
+    /// The same, but a headless flight of a situation is as long as its script.
+    pub fn scripted(self, args: &FlyArgs, plan: &Plan) -> Self {
+        match plan {
+            Plan::Situation(situation) if args.frames.is_none() && args.seconds_s.is_none() => {
+                let last_s =
+                    situation.moments().iter().map(|moment| moment.at_s).fold(situation.scripted_s(), f64::max);
+                Self::Seconds(last_s.max(HEADLESS_S))
+            }
+            _ => self,
         }
     }
 
@@ -85,6 +107,9 @@ impl Plan {
     /// # Errors
     /// [`Failure`] if a number makes no track, or a height above ground is asked for where there is none.
     pub fn new(args: &FlyArgs, length: Length, hz: f64, world: &World, area: &Area) -> Result<Self, Failure> {
+        if let Some(named) = &args.scenario {
+            return situation(named).map(|situation| Self::Situation(Box::new(situation)));
+        }
         let is_straight =
             args.world.is_some() || args.eye.is_some() || args.heading_deg.is_some() || args.speed_mps.is_some();
         let track = if is_straight { straight(args, length, hz, world, area)? } else { scenic(world)? };
@@ -100,15 +125,60 @@ impl Plan {
                 PicturePlace { distance_m, name: format!("{:.1} km", distance_m / 1e3) }
             }));
         }
-        Ok(Self { track, pictures })
+        Ok(Self::Track { track, pictures })
     }
 
-    /// A scene that flies the plan from its start.
-    pub fn scene(&self, date: sim::UtcTime) -> Scene {
-        let mut scene = Scene::new(AircraftState::level(DVec3::new(0.0, 5_000.0, 0.0), 0.0, SPEED_MPS), date);
-        scene.fly_track(self.track.clone());
-        scene
+    /// When it is flown, unless a date is asked for.
+    ///
+    /// # Errors
+    /// [`Failure::Failed`] if a situation's own date is none.
+    pub fn date(&self, args: &FlyArgs, world: &World) -> Result<UtcTime, Failure> {
+        let own = match self {
+            Self::Track { .. } => None,
+            Self::Situation(situation) => situation.date().map_err(|error| Failure::Failed(error.to_string()))?,
+        };
+        Ok(args.view.time.or(own).unwrap_or_else(|| scenery::default_moment(world)))
     }
+
+    /// What the pilot is told at the start.
+    pub fn say(&self) -> &[String] {
+        match self {
+            Self::Track { .. } => &[],
+            Self::Situation(situation) => situation.say(),
+        }
+    }
+
+    /// A scene that flies the plan from its start; a situation's own script flies it where no one else does.
+    ///
+    /// # Errors
+    /// [`Failure::Failed`] if the world is none for the situation.
+    pub fn scene(&self, world: &World, date: UtcTime, scripted: bool) -> Result<Scene, Failure> {
+        match self {
+            Self::Track { track, .. } => {
+                let mut scene = Scene::new(AircraftState::level(DVec3::new(0.0, 5_000.0, 0.0), 0.0, SPEED_MPS), date);
+                scene.fly_track(track.clone());
+                Ok(scene)
+            }
+            Self::Situation(situation) => situation
+                .scene(world, date, DEFAULT_STEP_HZ, Catalogue::default(), scripted)
+                .map_err(|error| Failure::Failed(error.to_string())),
+        }
+    }
+}
+
+/// A situation by its name, or of a file.
+fn situation(named: &Path) -> Result<Situation, Failure> {
+    let builtin = named.to_str().filter(|name| BUILTIN.iter().any(|(known, _)| known == name));
+    let read = match builtin {
+        Some(name) => Situation::builtin(name),
+        None if named.is_file() => Situation::read(named),
+        None => {
+            let known: Vec<&str> = BUILTIN.iter().map(|(name, _)| *name).collect();
+            let (known, found) = (known.join(", "), named.display());
+            return Err(Failure::Misuse(format!("--scenario: expected one of {known}, or a file, found {found}")));
+        }
+    };
+    read.map_err(|error| Failure::Failed(error.to_string()))
 }
 
 fn scenic(world: &World) -> Result<Track, Failure> {

@@ -11,7 +11,7 @@ use crate::args::FlyArgs;
 use crate::failure::Failure;
 use crate::output;
 use crate::report::{self, Fly};
-use crate::scenery::{self, Heavens, Look, Scenery};
+use crate::scenery::{Heavens, Look, Scenery};
 use crate::stage::cameras::Camera;
 use crate::stage::{self, Captions, Seat, Sun};
 use crate::sticks;
@@ -36,6 +36,8 @@ const TAKES_OVER: f64 = 0.15;
 const MESSAGE: Duration = Duration::from_secs(3);
 /// How long a new pilot is told the keys.
 const HELPED: Duration = Duration::from_secs(60);
+/// How long each line of what a situation tells stays on the display.
+const TOLD: Duration = Duration::from_secs(8);
 /// An input that shows no effect this long has none (time stands still).
 const NO_EFFECT: Duration = Duration::from_secs(1);
 /// Weight of the last frame in the frame time shown: figures that can be read.
@@ -94,6 +96,8 @@ struct Cockpit<'a> {
     picture_wanted: bool,
     pictures: Vec<PathBuf>,
     message: Option<(String, Instant)>,
+    /// What a situation tells its pilot.
+    say: Vec<String>,
 }
 
 /// The press of an axis key.
@@ -136,6 +140,7 @@ impl<'a> Cockpit<'a> {
             picture_wanted: false,
             pictures: Vec::new(),
             message: None,
+            say: Vec::new(),
         }
     }
 
@@ -166,9 +171,10 @@ impl<'a> Cockpit<'a> {
         scenery.use_models_of(self.args.world.as_deref())?;
         if self.flown.is_none() {
             let plan = Plan::new(self.args, self.length, LOCKSTEP_HZ, &self.world, &scenery.area)?;
-            let date = self.args.view.time.unwrap_or_else(|| scenery::default_moment(&self.world));
+            let date = plan.date(self.args, &self.world)?;
             let ground = scenery.scene_ground();
-            let mut scene = plan.scene(date);
+            let mut scene = plan.scene(&self.world, date, false)?;
+            self.say = plan.say().to_vec();
             inputs::prepare(self.args, &mut scene)?;
             let seat = Seat::new(&self.world, &scene, self.args.camera);
             sim::lockstep(&mut scene, &ground, 1);
@@ -285,7 +291,11 @@ impl<'a> Cockpit<'a> {
             let mut status = Vec::new();
             status.extend(slowed.then_some("SLOWED"));
             status.extend(message.map(|(text, _)| text.as_str()));
-            let captions = Captions { frame_ms: self.frame_ms, status: &status, hint: flown.hint(&snapshot) };
+            let captions = Captions {
+                frame_ms: self.frame_ms,
+                status: &status,
+                hint: flown.told(&self.say).unwrap_or_else(|| flown.hint(&snapshot)),
+            };
             stage::hud(&self.world, &snapshot, &seen, &heavens, captions)
         } else {
             Vec::new()
@@ -394,6 +404,12 @@ impl Flown {
             self.slowed = (snapshot.slowed_s, Some(Instant::now()));
         }
         self.slowed.1.is_some_and(|since| since.elapsed() < Duration::from_secs(1))
+    }
+
+    /// The line of what is told that is on now: each for a while, from the start on.
+    fn told<'s>(&self, say: &'s [String]) -> Option<&'s str> {
+        let line = (self.begun?.elapsed().as_secs_f64() / TOLD.as_secs_f64()) as usize;
+        say.get(line).map(String::as_str)
     }
 
     fn hint(&self, snapshot: &Snapshot) -> &'static str {

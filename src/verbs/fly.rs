@@ -47,12 +47,6 @@ fn has_display() -> bool {
 /// # Errors
 /// [`Failure`] says what was expected and what was found.
 pub fn run(args: &FlyArgs, to: Output, started: Instant) -> Result<(), Failure> {
-    if let Some(scenario) = &args.scenario {
-        return Err(Failure::Misuse(format!(
-            "this version reads no scenarios, found --scenario {}",
-            scenario.display()
-        )));
-    }
     let mode = Mode::of(args, has_display());
     if mode != Mode::Window {
         output::tell(format_args!("no window: pictures go to {}", args.shots.display()));

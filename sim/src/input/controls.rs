@@ -73,6 +73,26 @@ pub enum Command {
     NextCamera,
     /// Back to the pilot's eye.
     CockpitCamera,
+    /// Flaps out by a notch.
+    FlapsDown,
+    /// Flaps in by a notch.
+    FlapsUp,
+    /// Gear up or down.
+    Gear,
+    /// Both wheel brakes, while held.
+    Brake,
+    /// Wheel brakes let go.
+    BrakeEnd,
+    /// Parking brake on or off.
+    ParkingBrake,
+    /// Trim nose up by a notch.
+    TrimUp,
+    /// Trim nose down by a notch.
+    TrimDown,
+    /// Mixture richer by a notch.
+    MixtureRich,
+    /// Mixture leaner by a notch.
+    MixtureLean,
     /// Lets the trigger do something, or no longer.
     MasterArm,
     /// The next weapon.
@@ -117,6 +137,16 @@ impl fmt::Display for Command {
             Self::Hud => "head-up display",
             Self::NextCamera => "next camera",
             Self::CockpitCamera => "cockpit",
+            Self::FlapsDown => "flaps down",
+            Self::FlapsUp => "flaps up",
+            Self::Gear => "gear",
+            Self::Brake => "brakes",
+            Self::BrakeEnd => "brakes let go",
+            Self::ParkingBrake => "parking brake",
+            Self::TrimUp => "trim nose up",
+            Self::TrimDown => "trim nose down",
+            Self::MixtureRich => "mixture richer",
+            Self::MixtureLean => "mixture leaner",
             Self::MasterArm => "master arm",
             Self::NextWeapon => "next weapon",
             Self::NextRipple => "more or fewer in a row",
@@ -153,6 +183,16 @@ const NAMES: &[(&str, Command)] = &[
     ("hud", Command::Hud),
     ("next_camera", Command::NextCamera),
     ("cockpit_camera", Command::CockpitCamera),
+    ("flaps_down", Command::FlapsDown),
+    ("flaps_up", Command::FlapsUp),
+    ("gear", Command::Gear),
+    ("brake", Command::Brake),
+    ("brake_end", Command::BrakeEnd),
+    ("parking_brake", Command::ParkingBrake),
+    ("trim_up", Command::TrimUp),
+    ("trim_down", Command::TrimDown),
+    ("mixture_rich", Command::MixtureRich),
+    ("mixture_lean", Command::MixtureLean),
     ("master_arm", Command::MasterArm),
     ("next_weapon", Command::NextWeapon),
     ("next_ripple", Command::NextRipple),
@@ -180,6 +220,7 @@ impl Command {
         match self {
             Self::Look(_) => Some(Self::LookEnd),
             Self::Trigger => Some(Self::TriggerEnd),
+            Self::Brake => Some(Self::BrakeEnd),
             _ => None,
         }
     }

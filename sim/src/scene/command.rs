@@ -196,7 +196,7 @@ coded!(AircraftState {
 });
 
 /// The pilot's commands that change a scene, by their number in a save; the others concern the picture alone.
-const PILOT: [input::Command; 11] = [
+const PILOT: [input::Command; 26] = [
     input::Command::Pause,
     input::Command::Freeze,
     input::Command::Reset,
@@ -208,6 +208,21 @@ const PILOT: [input::Command; 11] = [
     input::Command::DateBack,
     input::Command::RateUp,
     input::Command::RateDown,
+    input::Command::FlapsDown,
+    input::Command::FlapsUp,
+    input::Command::Gear,
+    input::Command::Brake,
+    input::Command::BrakeEnd,
+    input::Command::ParkingBrake,
+    input::Command::TrimUp,
+    input::Command::TrimDown,
+    input::Command::MixtureRich,
+    input::Command::MixtureLean,
+    input::Command::MasterArm,
+    input::Command::NextWeapon,
+    input::Command::NextRipple,
+    input::Command::Trigger,
+    input::Command::TriggerEnd,
 ];
 
 impl Command {

@@ -17,16 +17,19 @@ use crate::rigid::motion;
 use crate::rigid::quantity::without_unit;
 use crate::snapshot::{Mode, StableId};
 use glam::DVec3;
+use std::f64::consts::TAU;
 
 /// What an aircraft with an engine of its own shows its pilot, beside its flight.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Instruments {
-    /// Speed of the engine's shaft, turns a minute; 0 without one.
-    pub rpm: f64,
-    /// Fuel that is left, kg; 0 where none is counted.
-    pub fuel_kg: f64,
-    /// Flaps as they stand, in the unit of their control; 0 without any.
-    pub flaps: f64,
+    /// Speed of the engine's shaft and its rated one, turns a minute; 0 without one.
+    pub rpm: [f64; 2],
+    /// Fuel that is left and what the tanks hold, kg; 0 where none is counted.
+    pub fuel_kg: [f64; 2],
+    /// Flaps as they stand and full out, in the unit of their control; 0 without any.
+    pub flaps: [f64; 2],
+    /// Force to the right over weight, as the slip ball shows it.
+    pub side_g: f64,
     /// Whether the stall warning sounds.
     pub stall_warning: bool,
     /// How much the airframe shakes before and in the stall, 0..1.
@@ -37,7 +40,7 @@ impl Instruments {
     /// The shake at a time, radians: nose up and right wing down. A picture of it only: the flight does not shake.
     pub fn shake_rad(&self, time_s: f64) -> [f64; 2] {
         // Two tones that do not beat in step; a light airframe's is felt at some ten a second.
-        let tone = |hz: f64| (std::f64::consts::TAU * (hz * time_s).fract()).sin();
+        let tone = |hz: f64| (TAU * (hz * time_s).fract()).sin();
         [0.004 * self.buffet * tone(11.3), 0.006 * self.buffet * tone(8.7)]
     }
 }
@@ -67,8 +70,8 @@ fn asked(name: &str, controls: &Controls, levers: &Levers) -> Option<f64> {
     })
 }
 
-/// The own aircraft of a body that it is; `before` was it a step earlier.
-fn seen(body: &Body, rig: &Rig, before: &AircraftState, throttle: f64, dt_s: f64) -> AircraftState {
+/// The own aircraft of a body that it is, and the force to its right over weight; `before` was it a step earlier.
+fn seen(body: &Body, rig: &Rig, before: &AircraftState, throttle: f64, dt_s: f64) -> (AircraftState, f64) {
     let planet = &rig.motion.planet;
     let at = body.carriage(planet);
     let (y, turned) = (&body.state, motion::attitude(&body.state));
@@ -78,17 +81,19 @@ fn seen(body: &Body, rig: &Rig, before: &AircraftState, throttle: f64, dt_s: f64
     let change = (at.velocity_mps - before.velocity_mps) / dt_s;
     let fall = world_from_ned(planet.fall_mps2(motion::position(y), motion::velocity(y)));
     let felt = at.attitude.inverse() * (change - fall);
-    AircraftState {
+    let whole = body.ended.is_none();
+    let state = AircraftState {
         position_m: at.position_m,
         velocity_mps: at.velocity_mps,
         attitude: at.attitude,
         rates_radps: at.rates_radps,
-        load_factor: if body.ended.is_some() { 1.0 } else { -felt.z / STANDARD_GRAVITY_MPS2 },
+        load_factor: if whole { -felt.z / STANDARD_GRAVITY_MPS2 } else { 1.0 },
         alpha_rad: if through_air.length() > 1.0 { through_air.z.atan2(through_air.x) } else { 0.0 },
         airspeed_mps: through_air.length(),
         throttle,
         condition: body.condition(),
-    }
+    };
+    (state, if whole { felt.y / STANDARD_GRAVITY_MPS2 } else { 0.0 })
 }
 
 impl Scene {
@@ -115,7 +120,7 @@ impl Scene {
             let at = body.carriage(&self.surroundings.planet());
             // No step was taken: nothing but its weight is felt.
             let rest = AircraftState { velocity_mps: at.velocity_mps, ..self.aircraft() };
-            let now = seen(&body, &self.rigs[body.model as usize], &rest, self.controls.throttle, 1.0);
+            let (now, _) = seen(&body, &self.rigs[body.model as usize], &rest, self.controls.throttle, 1.0);
             AircraftState { load_factor: 1.0, ..now }
         };
         self.flown = Some(id);
@@ -146,7 +151,7 @@ impl Scene {
     /// Puts the own aircraft where the body went in a step.
     pub(super) fn follow_flown(&mut self, entity: hecs::Entity, dt_s: f64) {
         let before = self.aircraft();
-        let Some(state) = self
+        let Some((state, side_g)) = self
             .ecs
             .get::<&Body>(entity)
             .ok()
@@ -154,6 +159,7 @@ impl Scene {
         else {
             return;
         };
+        self.side_g = side_g;
         self.set_aircraft(state);
     }
 
@@ -187,11 +193,15 @@ impl Scene {
         let buffet = model.stall.filter(|_| airborne).map_or(0.0, |cues| {
             ((own.alpha_rad - cues.buffet_rad) / (cues.full_buffet_rad - cues.buffet_rad)).clamp(0.0, 1.0)
         });
-        let turns = body.shaft_radps / std::f64::consts::TAU;
+        let turns = body.shaft_radps / TAU;
         Some(Instruments {
-            rpm: 60.0 * turns,
-            fuel_kg: body.tanks.as_ref().map_or(0.0, |tanks| tanks.fuel.fuel_kg),
-            flaps: flaps.map_or(0.0, at),
+            rpm: [60.0 * turns, model.power.as_ref().map_or(0.0, |power| 60.0 * power.engine.rated_radps / TAU)],
+            fuel_kg: [
+                body.tanks.as_ref().map_or(0.0, |tanks| tanks.fuel.fuel_kg),
+                model.tank.map_or(0.0, |tank| tank.capacity_kg),
+            ],
+            flaps: [flaps.map_or(0.0, at), flaps.map_or(0.0, |place| model.controls[place].max)],
+            side_g: self.side_g,
             stall_warning: airborne && model.stall.is_some_and(|cues| own.alpha_rad >= cues.warning_rad),
             buffet,
         })

@@ -25,6 +25,7 @@
 mod arms;
 mod body;
 mod catalogue;
+mod cockpit;
 pub(crate) mod codec;
 mod command;
 mod crew;
@@ -123,6 +124,8 @@ pub struct Scene {
     start: AircraftState,
     controls: Controls,
     levers: Levers,
+    /// Force to the right over weight in the last step; shown, never flown with.
+    side_g: f64,
     /// The body that is the own aircraft, if it is one.
     flown: Option<StableId>,
     track: Option<Track>,
@@ -212,6 +215,7 @@ impl Scene {
             start,
             controls,
             levers: Levers::default(),
+            side_g: 0.0,
             flown: None,
             track: None,
             track_m: 0.0,

@@ -59,6 +59,11 @@ impl Scene {
         }
     }
 
+    /// Axes as the pilot holds them.
+    pub fn controls(&self) -> Controls {
+        self.controls
+    }
+
     /// What the pilot commands from now on.
     pub fn set_controls(&mut self, controls: Controls) {
         // Checked controls are never refused.
@@ -101,6 +106,16 @@ impl Scene {
                     self.seek(self.track_m);
                 }
             }
+            input::Command::FlapsDown
+            | input::Command::FlapsUp
+            | input::Command::Gear
+            | input::Command::Brake
+            | input::Command::BrakeEnd
+            | input::Command::ParkingBrake
+            | input::Command::TrimUp
+            | input::Command::TrimDown
+            | input::Command::MixtureRich
+            | input::Command::MixtureLean => self.lever(command),
             input::Command::MasterArm
             | input::Command::NextWeapon
             | input::Command::NextRipple

@@ -130,6 +130,7 @@ impl Scene {
             aircraft,
             height_above_ground_m: self.height_above_ground_m,
             controls: self.controls,
+            levers: self.levers,
             flags: Flags {
                 paused: self.clock.paused(),
                 frozen: self.freeze != Freeze::None,

@@ -8,7 +8,6 @@
 //! | `target_kind.rs` | a kind of target: `T.toml` |
 //! | `ccip.rs` | where it would strike if it were released now |
 //! | `score.rs` | miss distance, clock code, tallies |
-//! | `range.rs` | a firing range as data, built on a world |
 //!
 //! Bodies: x forward, y right, z down. Targets: forward is -Z, up +Y. World: X east, Y up, Z south. Metres, seconds, SI.
 //! What flies, strikes and is struck in time is the scene's business ([`crate::scene`]); nothing here has a state.
@@ -18,7 +17,6 @@ pub mod builtin;
 pub mod ccip;
 pub mod crater;
 pub mod fuze;
-pub mod range;
 pub mod score;
 pub mod target_kind;
 pub mod warhead;

@@ -1,4 +1,12 @@
-//! A firing range as data: who attacks with what, what stands and drives there, and the wind. `RANGE.toml`.
+//! A situation as data: who flies what from where, what stands and drives there, the wind, and what a script flies where
+//! no pilot does. `S.toml`.
+//!
+//! | file | what |
+//! |---|---|
+//! | `mod.rs` | the file, and the scene of it on a world |
+//! | `own.rs` | the own aircraft: its model, its place on a runway or in the air, its stores |
+//! | `script.rs` | what is done when, in the place of a pilot |
+//! | `laid.rs` | places of the Earth on a world's map |
 //!
 //! Places are latitude and longitude in degrees (WGS84), headings clockwise from true north, winds the velocity of the
 //! air to true north and east; all are laid on the world's map, whose grid turns from true north by the convergence at
@@ -7,35 +15,61 @@
 //! Targets stand on the world's ground; those that swim must be on one of its lakes, at its level, with their whole route.
 //! A convoy's vehicles drive one route, the first of the list ahead, `spacing_m` over speed seconds apart.
 
-use super::target_kind::StandOn;
-use super::{TargetKind, builtin};
-use crate::aircraft::AircraftState;
+mod laid;
+mod own;
+mod script;
+
 use crate::file::{self, FileError};
-use crate::scene::{Catalogue, Column, Command, Height, Reaction, Refused, Scene, Surroundings, TargetStart};
+use crate::scene::{Catalogue, Column, Height, Reaction, Refused, Scene, Surroundings, TargetStart};
 use crate::utc::UtcTime;
+use crate::weapons::target_kind::StandOn;
+use crate::weapons::{TargetKind, builtin};
 use crate::wind::Wind;
 use glam::{DQuat, DVec2, DVec3};
+use laid::Laid;
+use own::Own;
+use script::Step;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use terrain::store::World;
-use terrain::{Area, Geodetic, Ground};
 
-/// The embedded range, on the embedded world.
-pub const BUILTIN: &str = include_str!("../../../assets/scenarios/range.toml");
+/// The embedded situations by name, all on the embedded world.
+pub const BUILTIN: [(&str, &str); 3] = [
+    ("circuit", include_str!("../../../assets/scenarios/circuit.toml")),
+    ("valley", include_str!("../../../assets/scenarios/valley.toml")),
+    ("range", include_str!("../../../assets/scenarios/range.toml")),
+];
 
-/// A range as its file has it.
+/// A situation as its file has it.
 #[derive(Debug, Clone)]
-pub struct Range {
+pub struct Situation {
     /// The file it comes from.
     pub file: PathBuf,
-    raw: RangeFile,
+    raw: SituationFile,
+}
+
+/// A moment worth a picture.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Moment {
+    /// When, scene seconds.
+    pub at_s: f64,
+    /// What it shows.
+    pub name: String,
+    /// Name of the camera, if it is not the cockpit.
+    pub camera: Option<String>,
 }
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RangeFile {
+struct SituationFile {
     name: String,
+    /// What the pilot is told, line by line.
+    #[serde(default)]
+    say: Vec<String>,
+    /// Date and time, as ISO.
+    date: Option<String>,
     #[serde(default)]
     seed: u64,
     #[serde(default)]
@@ -47,6 +81,10 @@ struct RangeFile {
     target: Vec<Standing>,
     #[serde(default)]
     convoy: Vec<Convoy>,
+    #[serde(default)]
+    script: Vec<Step>,
+    #[serde(default)]
+    picture: Vec<Moment>,
 }
 
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -57,29 +95,6 @@ struct WindRow {
     north_mps: f64,
     #[serde(default)]
     east_mps: f64,
-}
-
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Own {
-    lat_deg: f64,
-    lon_deg: f64,
-    altitude_m: f64,
-    #[serde(default)]
-    heading_deg: f64,
-    speed_mps: f64,
-    #[serde(default)]
-    station: Vec<StationFile>,
-    select: Option<String>,
-}
-
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct StationFile {
-    weapon: String,
-    rounds: u32,
-    #[serde(deserialize_with = "file::exactly")]
-    at_m: [f64; 3],
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -118,15 +133,20 @@ enum ReactionName {
     Scatter,
 }
 
-/// A world under a range: its map, its ground, and how its grid is turned.
-struct Laid<'a> {
-    world: &'a World,
-    area: Area,
-    convergence_rad: f64,
-}
+impl Situation {
+    /// An embedded one.
+    ///
+    /// # Errors
+    /// [`FileError`] names those that there are.
+    pub fn builtin(name: &str) -> Result<Self, FileError> {
+        let text = BUILTIN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text).ok_or_else(|| {
+            let known: Vec<&str> = BUILTIN.iter().map(|(known, _)| *known).collect();
+            FileError::new(name, format_args!("expected one of [{}], found {name}", known.join(", ")))
+        })?;
+        Self::from_text(Path::new(name), text)
+    }
 
-impl Range {
-    /// Reads a range.
+    /// Reads a situation.
     ///
     /// # Errors
     /// [`FileError`] names the key, what was expected and what was found.
@@ -139,7 +159,7 @@ impl Range {
     /// # Errors
     /// [`FileError`] names the key, what was expected and what was found.
     pub fn from_text(file: &Path, text: &str) -> Result<Self, FileError> {
-        let raw: RangeFile = file::toml_text(file, text)?;
+        let raw: SituationFile = file::toml_text(file, text)?;
         for (at, convoy) in raw.convoy.iter().enumerate() {
             let fail = |why: String| Err(FileError::new(file, format!("convoy[{at}].{why}")));
             if convoy.kinds.is_empty() {
@@ -153,7 +173,45 @@ impl Range {
                 return fail(format!("speed_mps, spacing_m: expected numbers above 0, found {speed}, {spacing}"));
             }
         }
-        Ok(Self { file: file.to_owned(), raw })
+        let fail = |key: &str, why: &dyn std::fmt::Display| Err(FileError::new(file, format!("{key}: {why}")));
+        if let Some(at) = raw.picture.iter().position(|one| !(0.0..=1e6).contains(&one.at_s)) {
+            return fail(
+                &format!("picture[{at}].at_s"),
+                &format_args!("expected seconds, found {}", raw.picture[at].at_s),
+            );
+        }
+        for (at, step) in raw.script.iter().enumerate() {
+            if let Err(why) = step.check() {
+                return fail(&format!("script[{at}]"), &why);
+            }
+        }
+        let situation = Self { file: file.to_owned(), raw };
+        situation.date()?;
+        Ok(situation)
+    }
+
+    /// What the pilot is told, line by line.
+    pub fn say(&self) -> &[String] {
+        &self.raw.say
+    }
+
+    /// Moments worth a picture.
+    pub fn moments(&self) -> &[Moment] {
+        &self.raw.picture
+    }
+
+    /// Date and time that it is set at, if it names one.
+    ///
+    /// # Errors
+    /// [`FileError`] says what was expected.
+    pub fn date(&self) -> Result<Option<UtcTime>, FileError> {
+        let parsed = self.raw.date.as_deref().map(UtcTime::parse).transpose();
+        parsed.map_err(|why| FileError::new(&self.file, format!("date: {why}")))
+    }
+
+    /// How long its script is, scene seconds; 0 without one.
+    pub fn scripted_s(&self) -> f64 {
+        self.raw.script.iter().map(|step| step.at_s).fold(0.0, f64::max)
     }
 
     /// What people call it.
@@ -161,7 +219,8 @@ impl Range {
         &self.raw.name
     }
 
-    /// The scene of it on a world: the embedded weapons and kinds of targets are added to the catalogue.
+    /// The scene of it on a world: the embedded weapons and kinds of targets are added to the catalogue. With `scripted`
+    /// its script flies.
     ///
     /// # Errors
     /// [`FileError`] names the entry that the world or the scene refuses, and why.
@@ -171,19 +230,14 @@ impl Range {
         date: UtcTime,
         step_hz: u32,
         mut catalogue: Catalogue,
+        scripted: bool,
     ) -> Result<Scene, FileError> {
         let fail = |key: &str, why: &dyn std::fmt::Display| FileError::new(&self.file, format!("{key}: {why}"));
         builtin::add_all(&mut catalogue).map_err(|why| fail("catalogue", &why))?;
         let own = &self.raw.own;
-        let start = Geodetic::from_degrees(own.lat_deg, own.lon_deg);
-        let laid = Laid {
-            world,
-            area: Ground::new(world.field.clone()).whole(),
-            convergence_rad: world.projection.grid_convergence_rad(start),
-        };
-        let plan = laid.place([own.lat_deg, own.lon_deg], false).map_err(|why| fail("own", &why))?.0;
-        let heading_rad = own.heading_deg.to_radians() - laid.convergence_rad;
-        let state = AircraftState::level(DVec3::new(plan.x, own.altitude_m, plan.y), heading_rad, own.speed_mps);
+        let model = own.add_model(&self.file, &mut catalogue).map_err(|why| fail("own.aircraft", &why))?;
+        let start = own.start(world, model.as_deref()).map_err(|why| fail("own", &why))?;
+        let laid = Laid::new(world, start.place);
         let mut around = Surroundings::over(world.projection.centre().lat_rad).map_err(|why| fail("world", &why))?;
         let turn = DQuat::from_rotation_z(-laid.convergence_rad);
         let row = |row: &WindRow| (row.altitude_m, turn * DVec3::new(row.north_mps, row.east_mps, 0.0));
@@ -191,46 +245,27 @@ impl Range {
             fail("wind", &format_args!("expected a height above {} m, found {}", not.before_m, not.found_m))
         })?;
         (around.turbulence_mps, around.seed) = (self.raw.turbulence_mps, self.raw.seed);
-        let mut scene = Scene::furnished(state, date, step_hz, around, Arc::new(catalogue))
+        let mut scene = Scene::furnished(start.state, date, step_hz, around, Arc::new(catalogue))
             .map_err(|why| fail("wind, turbulence_mps", &why))?;
+        let owner = own.seat(&mut scene, &start).map_err(|why| fail("own", &why))?;
         for (at, target) in self.raw.target.iter().enumerate() {
             laid.stand(&mut scene, target).map_err(|why| fail(&format!("target[{at}]"), &why))?;
         }
         for (at, convoy) in self.raw.convoy.iter().enumerate() {
             laid.drive(&mut scene, convoy, at as u32).map_err(|why| fail(&format!("convoy[{at}]"), &why))?;
         }
-        let owner = scene.own_id();
-        for (at, station) in own.station.iter().enumerate() {
-            let StationFile { weapon, rounds, at_m } = station.clone();
-            let load = Command::Load { owner, weapon, rounds, at_m: DVec3::from_array(at_m) };
-            scene.order(load).map_err(|why| fail(&format!("own.station[{at}]"), &why))?;
-        }
-        if own.select.is_some() {
-            let arm = Command::Arm { owner, master: false, weapon: own.select.clone(), fuze: None };
-            scene.order(arm).map_err(|why| fail("own.select", &why))?;
+        own.arm(&mut scene).map_err(|(key, why)| fail(&format!("own.{key}"), &why))?;
+        if scripted {
+            for (at, step) in self.raw.script.iter().enumerate() {
+                step.schedule(&mut scene, owner, &laid, start.runway.as_ref())
+                    .map_err(|why| fail(&format!("script[{at}]"), &why))?;
+            }
         }
         Ok(scene)
     }
 }
 
 impl Laid<'_> {
-    /// Plan place of a latitude and a longitude in degrees, and on water its level; it must have ground, or water.
-    fn place(&self, [lat_deg, lon_deg]: [f64; 2], on_water: bool) -> Result<(DVec2, f64), Refused> {
-        if !(lat_deg.abs() < 90.0 && lon_deg.abs() <= 180.0) {
-            return Err(Refused::new(format_args!("expected degrees on the Earth, found {lat_deg}, {lon_deg}")));
-        }
-        let plan = self.world.projection.to_world(Geodetic::from_degrees(lat_deg, lon_deg));
-        let ground_m = self.area.height_m(plan.x, plan.y).ok_or_else(|| {
-            Refused::new(format_args!("expected a place on the world's ground, found {lat_deg}, {lon_deg}"))
-        })?;
-        if !on_water {
-            return Ok((plan, ground_m));
-        }
-        let lake = self.world.lakes.lake_at(plan);
-        let dry = || Refused::new(format_args!("expected a place on a lake of the world, found {lat_deg}, {lon_deg}"));
-        lake.map(|lake| (plan, lake.level_m)).ok_or_else(dry)
-    }
-
     fn kind<'s>(scene: &'s Scene, name: &str) -> Result<&'s TargetKind, Refused> {
         scene.catalogue().target_kind(name)
     }
