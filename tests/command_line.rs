@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 const VERBS: [&str; 11] =
-    ["fly", "bake", "info", "verify", "height", "sight", "simulate", "trajectory", "shot", "bench", "trade"];
+    ["fly", "bake", "info", "verify", "height", "sight", "simulate", "modes", "trajectory", "shot", "bench", "trade"];
 
 /// A folder that is nowhere.
 const NO_WORLD: &str = "no/such/place.world";
