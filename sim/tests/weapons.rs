@@ -4,12 +4,16 @@ mod firing_range;
 
 use firing_range::{arm, armed, bombs_over, load, release, run, scores};
 use glam::{DQuat, DVec2, DVec3};
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
 use sim::aircraft::AircraftState;
 use sim::scene::{Column, Command, Happening, Height, Reaction, Scene, SceneGround, TargetStart};
 use sim::snapshot::StableId;
 use sim::weapons::{Aim, Damage, Fuze, Outcome, Trigger};
 use std::sync::Arc;
 use terrain::{Grid, Ground, synthetic};
+
+const SEED_BYTES: u64 = 20_261_203;
 
 fn plain() -> SceneGround {
     Ground::new(Arc::new(synthetic::flat(Grid::centred(200.0, 2, 2).unwrap(), 0.0))).whole().into()
@@ -261,40 +265,83 @@ fn a_column_drives_at_its_spacing_and_reacts_when_one_is_struck() {
     }
 }
 
+/// Trucks that drive round under an own aircraft that will release everything that it has.
+fn attack() -> Scene {
+    let mut scene = armed(DVec3::new(-1_500.0, 900.0, 500.0), 220.0);
+    let own = scene.own_id();
+    for i in 0..10 {
+        let at = DVec2::new(-1_560.0 + 13.0 * f64::from(i), -2_560.0);
+        let route_m = vec![at + DVec2::new(200.0, 50.0), at + DVec2::new(100.0, 300.0)];
+        let kind = ["truck", "tank", "apc"][i as usize % 3];
+        let column = Some(Column { number: 1, reaction: Reaction::Scatter });
+        let start = TargetStart { route_m, speed_mps: 9.0, loops: true, column, ..TargetStart::standing(kind, at) };
+        scene.add_target(&start).unwrap();
+    }
+    for (weapon, rounds, at_m) in [("mk82", 6, DVec3::Y), ("hydra70", 19, DVec3::NEG_Y), ("gsh23", 200, DVec3::X)] {
+        scene.order(load(own, weapon, rounds, at_m)).unwrap();
+    }
+    scene.order(arm(own, "mk82", Some(Fuze { trigger: Trigger::Delay(0.4), arming_s: 0.5 }))).unwrap();
+    for (step, weapon, rounds) in [(10, "gsh23", 120), (20, "hydra70", 12), (40, "mk82", 6)] {
+        let command = release(own, weapon, rounds, 1, 0.1, Aim::Nearest);
+        scene.schedule(sim::scene::Stamped { step, command }).unwrap();
+    }
+    scene
+}
+
+#[test]
+fn hostile_bytes_are_refused_or_step_but_never_panic() {
+    let ground = rough();
+    let mut scene = attack();
+    let mut random = StdRng::seed_from_u64(SEED_BYTES);
+    let (mut taken, mut told) = (0, 0);
+    // With bursts under way; and with scores, damage and a delay that runs.
+    for steps in [60, 1_560] {
+        run(&mut scene, &ground, steps);
+        let good = scene.save();
+        for _ in 0..1_000 {
+            let mut bytes = good.clone();
+            for _ in 0..random.random_range(1..4) {
+                let at = random.random_range(12..bytes.len() - 8);
+                bytes[at] = if random.random_bool(0.5) { 0xff } else { random.random_range(0..=255u8) };
+            }
+            match Scene::restore(&sealed(bytes), scene.catalogue().clone()) {
+                Ok(mut scene) => {
+                    taken += 1;
+                    run(&mut scene, &ground, 2);
+                }
+                Err(error) => {
+                    told += 1;
+                    assert!(error.to_string().contains("expected"), "{error}");
+                }
+            }
+        }
+    }
+    assert!(taken > 100 && told > 100, "{taken} taken, {told} refused");
+}
+
+/// Bytes with the checksum (FNV-1a) that they should have.
+fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let end = bytes.len() - 8;
+    let sum = bytes[..end]
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325u64, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3));
+    bytes[end..].copy_from_slice(&sum.to_le_bytes());
+    bytes
+}
+
 #[test]
 fn a_run_with_weapons_repeats_replays_and_restores_to_the_bit() {
     let ground = rough();
-    let begin = || {
-        let mut scene = armed(DVec3::new(-1_500.0, 900.0, 500.0), 220.0);
-        let own = scene.own_id();
-        for i in 0..10 {
-            let at = DVec2::new(-1_560.0 + 13.0 * f64::from(i), -2_560.0);
-            let route_m = vec![at + DVec2::new(200.0, 50.0), at + DVec2::new(100.0, 300.0)];
-            let kind = ["truck", "tank", "apc"][i as usize % 3];
-            let column = Some(Column { number: 1, reaction: Reaction::Scatter });
-            let start = TargetStart { route_m, speed_mps: 9.0, loops: true, column, ..TargetStart::standing(kind, at) };
-            scene.add_target(&start).unwrap();
-        }
-        for (weapon, rounds, at_m) in [("mk82", 6, DVec3::Y), ("hydra70", 19, DVec3::NEG_Y), ("gsh23", 200, DVec3::X)] {
-            scene.order(load(own, weapon, rounds, at_m)).unwrap();
-        }
-        scene.order(arm(own, "mk82", Some(Fuze { trigger: Trigger::Delay(0.4), arming_s: 0.5 }))).unwrap();
-        for (step, weapon, rounds) in [(10, "gsh23", 120), (20, "hydra70", 12), (40, "mk82", 6)] {
-            let command = release(own, weapon, rounds, 1, 0.1, Aim::Nearest);
-            scene.schedule(sim::scene::Stamped { step, command }).unwrap();
-        }
-        scene
-    };
-    let mut whole = begin();
+    let mut whole = attack();
     let (last, events) = run(&mut whole, &ground, 2_400);
     let hurt = events.iter().any(|event| matches!(event.what, Happening::Damage { .. }));
     let told: Vec<_> = scores(&events).iter().map(|one| (one.weapon, one.miss_m, one.clock, one.point_m)).collect();
     assert!(hurt, "something was hurt: {told:?}");
-    let mut again = begin();
+    let mut again = attack();
     let (twin, _) = run(&mut again, &ground, 2_400);
     assert_eq!((whole.hash(), last.hash()), (again.hash(), twin.hash()));
     // Cut anywhere, also while a delay runs.
-    let mut cut = begin();
+    let mut cut = attack();
     for step in 0..2_400 {
         if step % 97 == 0 {
             cut = Scene::restore(&cut.save(), cut.catalogue().clone()).unwrap();
