@@ -110,7 +110,7 @@ fn main() {
         let leavings: Vec<Leaving> = (0..60)
             .map(|i| {
                 let share = f64::from(i) / 60.0;
-                let heading = 6.28 * (share * 7.0).fract();
+                let heading = std::f64::consts::TAU * (share * 7.0).fract();
                 let dive = if name == "mk82" { -0.4 + 1.2 * share } else { 0.1 + 0.8 * share };
                 let way = terrain::frame::direction(heading, -dive);
                 let position_m = DVec3::new(0.0, if name == "mk82" { 300.0 + 6_000.0 * share } else { 1_200.0 }, 0.0);

@@ -388,6 +388,7 @@ fn what_cannot_be_is_refused_and_changes_nothing() {
         (load(own, "moab", 1, DVec3::ZERO), "expected one of [gsh23"),
         (load(own, "mk82", 1, DVec3::X * 1e6), "offset_m"),
         (load(own, "mk82", 1, DVec3::NAN), "finite"),
+        (load(own, "mk82", 5_000, DVec3::ZERO), "expected stores of up to 1000000 kg"),
         (arm(own, "moab", None), "found moab"),
         (arm(own, "mk82", Some(Fuze { trigger: Trigger::Delay(-1.0), arming_s: 0.0 })), "fuze.delay_s"),
         (arm(StableId(99), "mk82", None), "found 99"),
