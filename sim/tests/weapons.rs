@@ -152,6 +152,79 @@ fn a_delay_bursts_so_much_later_and_a_deeper_crater_than_an_impact() {
 }
 
 #[test]
+fn a_delayed_burst_goes_along_with_what_it_struck_and_is_scored_where_it_struck() {
+    let ground = plain();
+    let mut scene = armed(DVec3::new(0.0, 2_000.0, 0.0), 200.0);
+    let own = scene.own_id();
+    let start = TargetStart {
+        route_m: vec![DVec2::new(200.0, -900.0), DVec2::new(200.0, 500.0)],
+        speed_mps: 20.0,
+        ..TargetStart::standing("truck", DVec2::new(0.0, -900.0))
+    };
+    let id = scene.add_target(&start).unwrap();
+    scene.order(load(own, "mk82", 1, DVec3::ZERO)).unwrap();
+    scene.order(arm(own, "mk82", Some(Fuze { trigger: Trigger::Delay(0.05), arming_s: 0.0 }))).unwrap();
+    run(&mut scene, &ground, 120);
+    scene.order(release(own, "mk82", 1, 1, 0.0, Aim::Target(id))).unwrap();
+    scene.step(&ground);
+    let now = scene.snapshot();
+    let (bomb, truck) = (now.projectiles[0].id, now.targets[0]);
+    scene
+        .order(Command::Reposition {
+            id: bomb,
+            position_m: truck.position_m + DVec3::new(0.5, 30.0, 0.3),
+            velocity_mps: truck.velocity_mps + DVec3::NEG_Y * 300.0,
+            attitude: DQuat::IDENTITY,
+        })
+        .unwrap();
+    // As a solid shot of its mass it kills already: what is asked here is where it bursts.
+    let (mut before, mut strike, mut seen) = (scene.snapshot(), None, 0);
+    for _ in 0..60 {
+        scene.step(&ground);
+        let now = scene.snapshot();
+        for event in now.events_since(&before) {
+            match &event.what {
+                Happening::Impact(found) => strike = Some(*found),
+                Happening::Burst { point_m, buried, .. } => {
+                    let fraction = (event.time_s - before.time_s) / (now.time_s - before.time_s);
+                    let drawn = sim::Snapshot::interpolate(&before, &now, fraction).targets[0];
+                    let struck: sim::scene::Strike = strike.unwrap();
+                    let drawn_m = drawn.position_m + drawn.attitude * struck.point_in_target_m;
+                    assert!(drawn_m.distance(*point_m) < 1e-8 && !buried, "{drawn_m} {point_m}");
+                    seen += 1;
+                }
+                Happening::Score(score) => {
+                    assert_eq!((score.point_m, score.outcome), (strike.unwrap().point_m, Outcome::Kill));
+                    seen += 1;
+                }
+                _ => {}
+            }
+        }
+        before = now;
+    }
+    assert_eq!(seen, 2);
+}
+
+#[test]
+fn a_place_is_an_aim_and_short_and_long_left_and_right_are_told_by_the_clock() {
+    let drop = |aim_m: DVec3| {
+        let mut scene = armed(DVec3::new(0.0, 1_000.0, 0.0), 200.0);
+        let own = scene.own_id();
+        scene.order(load(own, "mk82", 1, DVec3::ZERO)).unwrap();
+        scene.order(arm(own, "mk82", None)).unwrap();
+        scene.order(release(own, "mk82", 1, 1, 0.0, Aim::Place(aim_m))).unwrap();
+        scores(&run(&mut scene, &plain(), 120 * 20).1)[0]
+    };
+    let struck_m = drop(DVec3::ZERO).point_m;
+    // The attack goes north (-z); what is aimed 50 m farther was struck short, at 6 o'clock.
+    for (off, clock) in [(DVec3::NEG_Z, 6), (DVec3::Z, 12), (DVec3::X, 9), (DVec3::NEG_X, 3)] {
+        let score = drop(struck_m + off * 50.0);
+        assert_eq!((score.point_m, score.clock, score.target), (struck_m, Some(clock), None));
+        assert!((score.miss_m.unwrap() - 50.0).abs() < 1e-9);
+    }
+}
+
+#[test]
 fn a_height_fuze_bursts_at_its_height_over_the_exact_ground() {
     let ground = rough();
     for height_m in [2.0, 15.0, 60.0] {
