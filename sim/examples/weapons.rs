@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use terrain::{Grid, Ground, synthetic};
 
-const BRICK: &str = "[body]\nmass_kg = 9000.0\ninertia_kgm2 = [[9e3, 0.0, 0.0], [0.0, 5e4, 0.0], [0.0, 0.0, 6e4]]\n\
+const BRICK: &str = "[body]\nmass_kg = 9000.0\ninertia_kgm2 = [[1.2e4, 0.0, 0.0], [0.0, 5e4, 0.0], [0.0, 0.0, 6e4]]\n\
     [reference]\narea_m2 = 20.0\nspan_m = 8.0\nchord_m = 3.0\n[[aero.term]]\nto = \"CD\"\nvalue = 0.02\n";
 
 fn scene(bodies: u32, targets: u32, armed: bool) -> Scene {
@@ -110,7 +110,7 @@ fn main() {
         let leavings: Vec<Leaving> = (0..60)
             .map(|i| {
                 let share = f64::from(i) / 60.0;
-                let heading = 6.28 * (share * 7.0).fract();
+                let heading = std::f64::consts::TAU * (share * 7.0).fract();
                 let dive = if name == "mk82" { -0.4 + 1.2 * share } else { 0.1 + 0.8 * share };
                 let way = terrain::frame::direction(heading, -dive);
                 let position_m = DVec3::new(0.0, if name == "mk82" { 300.0 + 6_000.0 * share } else { 1_200.0 }, 0.0);
@@ -132,8 +132,8 @@ fn main() {
                 )
             })
             .collect();
-        for step_s in [1.0, 0.5, 0.2, 0.1, 0.05] {
-            let settings = Settings { step_s, ..usual };
+        for step_s in [2.0, 1.0, 0.4, 0.2, 0.1] {
+            let settings = Settings { step_s, most_steps: 10_000, ..usual };
             let (mut errors, mut costs, mut steps) = (Vec::new(), Vec::new(), 0);
             for (leaving, exact) in leavings.iter().zip(&exact) {
                 let mut least = f64::INFINITY;

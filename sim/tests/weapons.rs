@@ -4,12 +4,16 @@ mod firing_range;
 
 use firing_range::{arm, armed, bombs_over, load, release, run, scores};
 use glam::{DQuat, DVec2, DVec3};
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
 use sim::aircraft::AircraftState;
 use sim::scene::{Column, Command, Happening, Height, Reaction, Scene, SceneGround, TargetStart};
 use sim::snapshot::StableId;
 use sim::weapons::{Aim, Damage, Fuze, Outcome, Trigger};
 use std::sync::Arc;
 use terrain::{Grid, Ground, synthetic};
+
+const SEED_BYTES: u64 = 20_261_203;
 
 fn plain() -> SceneGround {
     Ground::new(Arc::new(synthetic::flat(Grid::centred(200.0, 2, 2).unwrap(), 0.0))).whole().into()
@@ -148,6 +152,79 @@ fn a_delay_bursts_so_much_later_and_a_deeper_crater_than_an_impact() {
 }
 
 #[test]
+fn a_delayed_burst_goes_along_with_what_it_struck_and_is_scored_where_it_struck() {
+    let ground = plain();
+    let mut scene = armed(DVec3::new(0.0, 2_000.0, 0.0), 200.0);
+    let own = scene.own_id();
+    let start = TargetStart {
+        route_m: vec![DVec2::new(200.0, -900.0), DVec2::new(200.0, 500.0)],
+        speed_mps: 20.0,
+        ..TargetStart::standing("truck", DVec2::new(0.0, -900.0))
+    };
+    let id = scene.add_target(&start).unwrap();
+    scene.order(load(own, "mk82", 1, DVec3::ZERO)).unwrap();
+    scene.order(arm(own, "mk82", Some(Fuze { trigger: Trigger::Delay(0.05), arming_s: 0.0 }))).unwrap();
+    run(&mut scene, &ground, 120);
+    scene.order(release(own, "mk82", 1, 1, 0.0, Aim::Target(id))).unwrap();
+    scene.step(&ground);
+    let now = scene.snapshot();
+    let (bomb, truck) = (now.projectiles[0].id, now.targets[0]);
+    scene
+        .order(Command::Reposition {
+            id: bomb,
+            position_m: truck.position_m + DVec3::new(0.5, 30.0, 0.3),
+            velocity_mps: truck.velocity_mps + DVec3::NEG_Y * 300.0,
+            attitude: DQuat::IDENTITY,
+        })
+        .unwrap();
+    // As a solid shot of its mass it kills already: what is asked here is where it bursts.
+    let (mut before, mut strike, mut seen) = (scene.snapshot(), None, 0);
+    for _ in 0..60 {
+        scene.step(&ground);
+        let now = scene.snapshot();
+        for event in now.events_since(&before) {
+            match &event.what {
+                Happening::Impact(found) => strike = Some(*found),
+                Happening::Burst { point_m, buried, .. } => {
+                    let fraction = (event.time_s - before.time_s) / (now.time_s - before.time_s);
+                    let drawn = sim::Snapshot::interpolate(&before, &now, fraction).targets[0];
+                    let struck: sim::scene::Strike = strike.unwrap();
+                    let drawn_m = drawn.position_m + drawn.attitude * struck.point_in_target_m;
+                    assert!(drawn_m.distance(*point_m) < 1e-8 && !buried, "{drawn_m} {point_m}");
+                    seen += 1;
+                }
+                Happening::Score(score) => {
+                    assert_eq!((score.point_m, score.outcome), (strike.unwrap().point_m, Outcome::Kill));
+                    seen += 1;
+                }
+                _ => {}
+            }
+        }
+        before = now;
+    }
+    assert_eq!(seen, 2);
+}
+
+#[test]
+fn a_place_is_an_aim_and_short_and_long_left_and_right_are_told_by_the_clock() {
+    let drop = |aim_m: DVec3| {
+        let mut scene = armed(DVec3::new(0.0, 1_000.0, 0.0), 200.0);
+        let own = scene.own_id();
+        scene.order(load(own, "mk82", 1, DVec3::ZERO)).unwrap();
+        scene.order(arm(own, "mk82", None)).unwrap();
+        scene.order(release(own, "mk82", 1, 1, 0.0, Aim::Place(aim_m))).unwrap();
+        scores(&run(&mut scene, &plain(), 120 * 20).1)[0]
+    };
+    let struck_m = drop(DVec3::ZERO).point_m;
+    // The attack goes north (-z); what is aimed 50 m farther was struck short, at 6 o'clock.
+    for (off, clock) in [(DVec3::NEG_Z, 6), (DVec3::Z, 12), (DVec3::X, 9), (DVec3::NEG_X, 3)] {
+        let score = drop(struck_m + off * 50.0);
+        assert_eq!((score.point_m, score.clock, score.target), (struck_m, Some(clock), None));
+        assert!((score.miss_m.unwrap() - 50.0).abs() < 1e-9);
+    }
+}
+
+#[test]
 fn a_height_fuze_bursts_at_its_height_over_the_exact_ground() {
     let ground = rough();
     for height_m in [2.0, 15.0, 60.0] {
@@ -261,40 +338,83 @@ fn a_column_drives_at_its_spacing_and_reacts_when_one_is_struck() {
     }
 }
 
+/// Trucks that drive round under an own aircraft that will release everything that it has.
+fn attack() -> Scene {
+    let mut scene = armed(DVec3::new(-1_500.0, 900.0, 500.0), 220.0);
+    let own = scene.own_id();
+    for i in 0..10 {
+        let at = DVec2::new(-1_560.0 + 13.0 * f64::from(i), -2_560.0);
+        let route_m = vec![at + DVec2::new(200.0, 50.0), at + DVec2::new(100.0, 300.0)];
+        let kind = ["truck", "tank", "apc"][i as usize % 3];
+        let column = Some(Column { number: 1, reaction: Reaction::Scatter });
+        let start = TargetStart { route_m, speed_mps: 9.0, loops: true, column, ..TargetStart::standing(kind, at) };
+        scene.add_target(&start).unwrap();
+    }
+    for (weapon, rounds, at_m) in [("mk82", 6, DVec3::Y), ("hydra70", 19, DVec3::NEG_Y), ("gsh23", 200, DVec3::X)] {
+        scene.order(load(own, weapon, rounds, at_m)).unwrap();
+    }
+    scene.order(arm(own, "mk82", Some(Fuze { trigger: Trigger::Delay(0.4), arming_s: 0.5 }))).unwrap();
+    for (step, weapon, rounds) in [(10, "gsh23", 120), (20, "hydra70", 12), (40, "mk82", 6)] {
+        let command = release(own, weapon, rounds, 1, 0.1, Aim::Nearest);
+        scene.schedule(sim::scene::Stamped { step, command }).unwrap();
+    }
+    scene
+}
+
+#[test]
+fn hostile_bytes_are_refused_or_step_but_never_panic() {
+    let ground = rough();
+    let mut scene = attack();
+    let mut random = StdRng::seed_from_u64(SEED_BYTES);
+    let (mut taken, mut told) = (0, 0);
+    // With bursts under way; and with scores, damage and a delay that runs.
+    for steps in [60, 1_560] {
+        run(&mut scene, &ground, steps);
+        let good = scene.save();
+        for _ in 0..1_000 {
+            let mut bytes = good.clone();
+            for _ in 0..random.random_range(1..4) {
+                let at = random.random_range(12..bytes.len() - 8);
+                bytes[at] = if random.random_bool(0.5) { 0xff } else { random.random_range(0..=255u8) };
+            }
+            match Scene::restore(&sealed(bytes), scene.catalogue().clone()) {
+                Ok(mut scene) => {
+                    taken += 1;
+                    run(&mut scene, &ground, 2);
+                }
+                Err(error) => {
+                    told += 1;
+                    assert!(error.to_string().contains("expected"), "{error}");
+                }
+            }
+        }
+    }
+    assert!(taken > 100 && told > 100, "{taken} taken, {told} refused");
+}
+
+/// Bytes with the checksum (FNV-1a) that they should have.
+fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let end = bytes.len() - 8;
+    let sum = bytes[..end]
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325u64, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3));
+    bytes[end..].copy_from_slice(&sum.to_le_bytes());
+    bytes
+}
+
 #[test]
 fn a_run_with_weapons_repeats_replays_and_restores_to_the_bit() {
     let ground = rough();
-    let begin = || {
-        let mut scene = armed(DVec3::new(-1_500.0, 900.0, 500.0), 220.0);
-        let own = scene.own_id();
-        for i in 0..10 {
-            let at = DVec2::new(-1_560.0 + 13.0 * f64::from(i), -2_560.0);
-            let route_m = vec![at + DVec2::new(200.0, 50.0), at + DVec2::new(100.0, 300.0)];
-            let kind = ["truck", "tank", "apc"][i as usize % 3];
-            let column = Some(Column { number: 1, reaction: Reaction::Scatter });
-            let start = TargetStart { route_m, speed_mps: 9.0, loops: true, column, ..TargetStart::standing(kind, at) };
-            scene.add_target(&start).unwrap();
-        }
-        for (weapon, rounds, at_m) in [("mk82", 6, DVec3::Y), ("hydra70", 19, DVec3::NEG_Y), ("gsh23", 200, DVec3::X)] {
-            scene.order(load(own, weapon, rounds, at_m)).unwrap();
-        }
-        scene.order(arm(own, "mk82", Some(Fuze { trigger: Trigger::Delay(0.4), arming_s: 0.5 }))).unwrap();
-        for (step, weapon, rounds) in [(10, "gsh23", 120), (20, "hydra70", 12), (40, "mk82", 6)] {
-            let command = release(own, weapon, rounds, 1, 0.1, Aim::Nearest);
-            scene.schedule(sim::scene::Stamped { step, command }).unwrap();
-        }
-        scene
-    };
-    let mut whole = begin();
+    let mut whole = attack();
     let (last, events) = run(&mut whole, &ground, 2_400);
     let hurt = events.iter().any(|event| matches!(event.what, Happening::Damage { .. }));
     let told: Vec<_> = scores(&events).iter().map(|one| (one.weapon, one.miss_m, one.clock, one.point_m)).collect();
     assert!(hurt, "something was hurt: {told:?}");
-    let mut again = begin();
+    let mut again = attack();
     let (twin, _) = run(&mut again, &ground, 2_400);
     assert_eq!((whole.hash(), last.hash()), (again.hash(), twin.hash()));
     // Cut anywhere, also while a delay runs.
-    let mut cut = begin();
+    let mut cut = attack();
     for step in 0..2_400 {
         if step % 97 == 0 {
             cut = Scene::restore(&cut.save(), cut.catalogue().clone()).unwrap();
@@ -341,6 +461,7 @@ fn what_cannot_be_is_refused_and_changes_nothing() {
         (load(own, "moab", 1, DVec3::ZERO), "expected one of [gsh23"),
         (load(own, "mk82", 1, DVec3::X * 1e6), "offset_m"),
         (load(own, "mk82", 1, DVec3::NAN), "finite"),
+        (load(own, "mk82", 5_000, DVec3::ZERO), "expected stores of up to 1000000 kg"),
         (arm(own, "moab", None), "found moab"),
         (arm(own, "mk82", Some(Fuze { trigger: Trigger::Delay(-1.0), arming_s: 0.0 })), "fuze.delay_s"),
         (arm(StableId(99), "mk82", None), "found 99"),

@@ -74,7 +74,8 @@ fn worst(weapon: &str, dive_deg: (f64, f64), agl_m: (f64, f64), allowed: impl Fn
             let (x_m, z_m) = (random.random_range(-span_m..span_m), random.random_range(-span_m..span_m));
             let over_m = random.random_range(agl_m.0..agl_m.1);
             let pitch_rad = -random.random_range(dive_deg.0..dive_deg.1).to_radians();
-            let (heading_rad, roll_rad) = (random.random_range(0.0..6.28), random.random_range(-0.5..0.5));
+            let (heading_rad, roll_rad) =
+                (random.random_range(0.0..std::f64::consts::TAU), random.random_range(-0.5..0.5));
             let speed_mps = random.random_range(100.0..320.0);
             let at = DVec3::new(x_m, area.height_m(x_m, z_m).unwrap() + over_m, z_m);
             let mut scene = scene(weapon, &mut random, flying(at, heading_rad, pitch_rad, roll_rad, speed_mps));

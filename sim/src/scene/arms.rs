@@ -19,6 +19,8 @@ use std::sync::Arc;
 
 /// Most stations of an owner.
 pub const MOST_STATIONS: usize = 64;
+/// Heaviest stores of an owner, kg.
+pub const MOST_STORES_KG: f64 = 1e6;
 
 /// A place that carries a weapon.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,7 +6,7 @@
 //!
 //! Invariants others rely on: a state is finite and its quaternion of length 1; a step allocates nothing.
 
-use super::arms::StoresLoad;
+use super::arms::{MOST_STORES_KG, StoresLoad};
 use super::codec::coded;
 use super::event::EndReason;
 use super::failure::{Armed, Fault, Fuel, Tanks};
@@ -196,9 +196,9 @@ impl Body {
         if !(1..=MOST_PIECES).contains(&self.pieces) {
             return Err(Refused::new(format_args!("body.pieces: expected 1..=1000, found {}", self.pieces)));
         }
-        if !(0.0..=1e7).contains(&self.stores.mass_kg) {
+        if !(0.0..=MOST_STORES_KG).contains(&self.stores.mass_kg) {
             let found = self.stores.mass_kg;
-            return Err(Refused::new(format_args!("body.stores: expected 0..=1e7 kg, found {found}")));
+            return Err(Refused::new(format_args!("body.stores: expected 0..={MOST_STORES_KG} kg, found {found}")));
         }
         let lists = [(self.moved.len(), controls), (self.treads.len(), model.contacts.len())];
         if let Some((found, expected)) = lists.into_iter().find(|(found, expected)| *found != 0 && found != expected) {

@@ -83,7 +83,7 @@ impl Ended {
 
     /// What a restored one must be.
     pub fn check(&self, weapons: usize) -> Result<(), Refused> {
-        if self.load.weapon as usize >= weapons || !self.rested {
+        if self.load.weapon as usize >= weapons || !self.rested || self.kills > 1_000_000 {
             return Err(Refused::new("resting: expected a weapon of the catalogue that struck"));
         }
         place("resting.point_m", self.point_m).map(|_| ())

@@ -3,7 +3,7 @@
 //! Invariant others rely on: a command is checked whole before anything changes; what is refused changes nothing. If it
 //! had been scheduled, an event tells it, and it stands in the record.
 
-use super::arms::{Arms, Load, MOST_STATIONS, Station};
+use super::arms::{Arms, Load, MOST_STATIONS, MOST_STORES_KG, Station};
 use super::body::{Body, Rig};
 use super::codec::{Coded, Reader};
 use super::event::Happening;
@@ -202,6 +202,13 @@ impl Scene {
         let hung = self.arms.get(&owner).map_or(0, |arms| arms.stations.len());
         if hung >= MOST_STATIONS {
             return Err(Refused::new(format_args!("load: expected at most {MOST_STATIONS} stations")));
+        }
+        let more_kg = self.catalogue.weapons[weapon as usize].thing.carried_kg * f64::from(rounds);
+        let mass_kg = self.stores_load(owner).mass_kg + more_kg;
+        if mass_kg > MOST_STORES_KG {
+            return Err(Refused::new(format_args!(
+                "load: expected stores of up to {MOST_STORES_KG} kg, found {mass_kg}"
+            )));
         }
         let station = Station { weapon, at_m, loaded: rounds, left: rounds };
         self.arms.entry(owner).or_default().stations.push(station);

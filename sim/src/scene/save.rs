@@ -216,6 +216,10 @@ impl Scene {
         if self.tallies.keys().any(|(_, weapon)| *weapon as usize >= weapons) {
             return Err(from.refuse("tally: expected a weapon of the catalogue"));
         }
+        let counts = |tally: &Tally| [tally.released, tally.hits, tally.kills, tally.duds, tally.lost, tally.measured];
+        if self.tallies.values().any(|tally| counts(tally).iter().any(|count| *count > MOST_COUNTED)) {
+            return Err(from.refuse(format_args!("tally: expected counts of at most {MOST_COUNTED}")));
+        }
         self.log = from.take()?;
         if self.fired.values().any(|rounds| *rounds > MOST_COUNTED) || self.log.counted > MOST_COUNTED {
             return Err(from.refuse(format_args!("expected at most {MOST_COUNTED} rounds and events")));

@@ -5,7 +5,7 @@
 //! move during the step while shells are swept past them.
 //!
 //! Invariant others rely on: the cost of an entity does not depend on how many others there are, and no entity costs an
-//! allocation a step; only what strikes, fires or fails may.
+//! allocation a step; only what strikes, fires or fails may, and the page of an own aircraft that carries weapons.
 
 use super::body::{Body, Outcome};
 use super::effects::Ended;

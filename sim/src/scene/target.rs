@@ -18,8 +18,8 @@ use crate::weapons::target_kind::Stand;
 use crate::weapons::{Damage, TargetKind};
 use glam::{DQuat, DVec2, DVec3};
 
-/// Longest way driven before the start, as time, seconds.
-const MOST_AHEAD_S: f64 = 1e5;
+/// Longest way driven before the start, metres: a bounded number of waypoints.
+const MOST_AHEAD_M: f64 = 1e6;
 /// How far a scattering target drives ahead, and then ahead and aside, metres.
 const SCATTER_AHEAD_M: f64 = 10.0;
 const SCATTER_ASIDE_M: f64 = 40.0;
@@ -315,10 +315,10 @@ impl TargetStart {
                 "target.speed_mps: expected at most {most_mps} of its kind, found {found}"
             )));
         }
-        if !(0.0..=MOST_AHEAD_S).contains(&self.ahead_s) {
+        if !(self.ahead_s >= 0.0 && self.ahead_s * self.speed_mps <= MOST_AHEAD_M) {
+            let found = self.ahead_s;
             return Err(Refused::new(format_args!(
-                "target.ahead_s: expected 0..={MOST_AHEAD_S}, found {}",
-                self.ahead_s
+                "target.ahead_s: expected seconds for up to {MOST_AHEAD_M} m, found {found}"
             )));
         }
         Route::new(waypoints_m, self.speed_mps, turn_radps, self.loops)

@@ -212,6 +212,40 @@ mod tests {
     }
 
     #[test]
+    fn around_a_point_it_finds_every_target_within_reach_and_few_beyond() {
+        let mut random = StdRng::seed_from_u64(SEED_TARGETS);
+        let mut grid = TargetGrid::default();
+        let mut within = 0;
+        for (count, span_m, reach_m) in [(1, 10.0, 30.0), (300, 2_000.0, 150.0), (300, 150_000.0, 9_000.0)] {
+            let targets = crowd(&mut random, count, span_m);
+            grid.rebuild(&targets);
+            for _ in 0..500 {
+                let at = DVec3::new(random.random_range(-span_m..span_m), 0.0, random.random_range(-span_m..span_m));
+                let mut found = Vec::new();
+                grid.around(at.x, at.z, reach_m, |index| found.push(index));
+                for (index, target) in targets.iter().enumerate() {
+                    let near_m = at.distance(target.from.position_m).min(at.distance(target.to.position_m));
+                    if near_m <= reach_m + target.shape.radius_m() {
+                        assert!(found.contains(&index), "{at} {target:?}");
+                        within += 1;
+                    }
+                }
+            }
+        }
+        assert!(within > 1_000, "{within}");
+        let mut crowd = crowd(&mut random, 4_000, 20_000.0);
+        crowd.iter_mut().for_each(|target| target.shape = Shape::sphere(4.0).unwrap());
+        grid.rebuild(&crowd);
+        let mut asked = 0;
+        for _ in 0..100 {
+            let (x_m, z_m) = (random.random_range(-2e4..2e4), random.random_range(-2e4..2e4));
+            grid.around(x_m, z_m, 100.0, |_| asked += 1);
+        }
+        // One target in 4e5 m2; two or three cells of 32 m more on each side than 200 m: 0.2 a question, four times over.
+        assert!(asked < 100, "{asked}");
+    }
+
+    #[test]
     fn a_path_asks_few_targets_of_many() {
         let mut random = StdRng::seed_from_u64(SEED_TARGETS);
         let mut grid = TargetGrid::default();

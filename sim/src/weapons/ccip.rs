@@ -24,7 +24,9 @@ use glam::DVec3;
 use serde::Serialize;
 
 /// Most steps of a prediction.
-pub const MOST_STEPS: u32 = 320;
+pub const MOST_STEPS: u32 = 160;
+/// Length of a step while a motor burns, over that of the others: there the speed changes most.
+const BURN_SHARE: f64 = 0.25;
 /// Range at which a gun's pipper is shown, metres.
 pub const SIGHT_RANGE_M: f64 = 800.0;
 /// Longest that a too low release is followed under the ground, seconds.
@@ -48,7 +50,7 @@ pub struct Leaving {
 /// How a prediction is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Length of a step, seconds.
+    /// Length of a step, seconds; a quarter of it while a motor burns.
     pub step_s: f64,
     /// Longest flight, seconds.
     pub most_s: f64,
@@ -128,9 +130,9 @@ impl Settings {
     /// Those for a weapon with its fuze as set.
     pub fn of(weapon: &Weapon, fuze: Fuze) -> Self {
         let (step_s, most_s, range_m) = match weapon.kind {
-            WeaponKind::Bomb => (0.5, 150.0, None),
-            WeaponKind::Rocket => (0.2, 40.0, None),
-            WeaponKind::Gun => (0.1, 20.0, Some(SIGHT_RANGE_M)),
+            WeaponKind::Bomb => (1.0, 150.0, None),
+            WeaponKind::Rocket => (0.4, 40.0, None),
+            WeaponKind::Gun => (0.2, 20.0, Some(SIGHT_RANGE_M)),
         };
         let most_steps = MOST_STEPS;
         Self { step_s, most_s, most_steps, fuze, safe_m: weapon.warhead.map_or(0.0, |warhead| warhead.safe_m), range_m }
@@ -159,7 +161,8 @@ pub fn predict(
             break;
         }
         let row_s = projectile.burn.iter().map(|row| row[0]).find(|row_s| *row_s > t_s).unwrap_or(f64::INFINITY);
-        let to_s = (t_s + settings.step_s).min(row_s).min(end_s);
+        let step_s = if row_s.is_finite() { BURN_SHARE * settings.step_s } else { settings.step_s };
+        let to_s = (t_s + step_s).min(row_s).min(end_s);
         motion.burn_as_at(&projectile.burn, 0.5 * (t_s + to_s));
         let next = match advance(Integrator::Rk4, &motion, t_s, &y, to_s - t_s, &mut None) {
             Ok((next, _)) => next,
