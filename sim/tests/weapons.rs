@@ -206,6 +206,37 @@ fn a_delayed_burst_goes_along_with_what_it_struck_and_is_scored_where_it_struck(
 }
 
 #[test]
+fn one_burst_kills_and_hurts_the_share_that_the_curve_gives() {
+    let ground = plain();
+    let mut scene = armed(DVec3::new(0.0, 2_000.0, 0.0), 200.0);
+    let (own, count, radius_m) = (scene.own_id(), 400, 32.0);
+    // Lorries all round, their fronts to the middle: the nearest point of each is at the lethal radius, on the ground.
+    for i in 0..count {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / f64::from(count)).sin_cos();
+        let at = DVec2::new(sin, cos) * (radius_m + 3.7);
+        let start =
+            TargetStart { attitude: DQuat::from_rotation_y(sin.atan2(cos)), ..TargetStart::standing("truck", at) };
+        scene.add_target(&start).unwrap();
+    }
+    scene.order(load(own, "mk82", 1, DVec3::ZERO)).unwrap();
+    scene.order(arm(own, "mk82", Some(Fuze { trigger: Trigger::Impact, arming_s: 0.0 }))).unwrap();
+    scene.order(release(own, "mk82", 1, 1, 0.0, Aim::Place(DVec3::ZERO))).unwrap();
+    scene.step(&ground);
+    let id = scene.snapshot().projectiles[0].id;
+    let (position_m, velocity_mps) = (DVec3::Y * 50.0, DVec3::NEG_Y * 300.0);
+    scene.order(Command::Reposition { id, position_m, velocity_mps, attitude: DQuat::IDENTITY }).unwrap();
+    let (last, events) = run(&mut scene, &ground, 60);
+    let share = |of: fn(Damage) -> bool| {
+        last.targets.iter().filter(|target| of(target.damage)).count() as f64 / f64::from(count)
+    };
+    // Four standard deviations of a share of 400: 0.097 and 0.083.
+    let (killed, hurt) = (share(|damage| damage == Damage::Destroyed), share(|damage| damage != Damage::Intact));
+    assert!((killed - (-1f64).exp()).abs() < 0.097, "{killed}");
+    assert!((hurt - (-0.25f64).exp()).abs() < 0.083, "{hurt}");
+    assert_eq!(f64::from(scores(&events)[0].kills), killed * f64::from(count));
+}
+
+#[test]
 fn a_place_is_an_aim_and_short_and_long_left_and_right_are_told_by_the_clock() {
     let drop = |aim_m: DVec3| {
         let mut scene = armed(DVec3::new(0.0, 1_000.0, 0.0), 200.0);
