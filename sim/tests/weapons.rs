@@ -369,8 +369,8 @@ fn a_column_drives_at_its_spacing_and_reacts_when_one_is_struck() {
     }
 }
 
-/// Trucks that drive round under an own aircraft that will release everything that it has.
-fn attack() -> Scene {
+/// Trucks that drive round under an own aircraft that is armed and will do nothing.
+fn quiet() -> Scene {
     let mut scene = armed(DVec3::new(-1_500.0, 900.0, 500.0), 220.0);
     let own = scene.own_id();
     for i in 0..10 {
@@ -385,6 +385,13 @@ fn attack() -> Scene {
         scene.order(load(own, weapon, rounds, at_m)).unwrap();
     }
     scene.order(arm(own, "mk82", Some(Fuze { trigger: Trigger::Delay(0.4), arming_s: 0.5 }))).unwrap();
+    scene
+}
+
+/// The same, and it will release everything that it has.
+fn attack() -> Scene {
+    let mut scene = quiet();
+    let own = scene.own_id();
     for (step, weapon, rounds) in [(10, "gsh23", 120), (20, "hydra70", 12), (40, "mk82", 6)] {
         let command = release(own, weapon, rounds, 1, 0.1, Aim::Nearest);
         scene.schedule(sim::scene::Stamped { step, command }).unwrap();
@@ -437,6 +444,7 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
 fn a_run_with_weapons_repeats_replays_and_restores_to_the_bit() {
     let ground = rough();
     let mut whole = attack();
+    whole.start_record();
     let (last, events) = run(&mut whole, &ground, 2_400);
     let hurt = events.iter().any(|event| matches!(event.what, Happening::Damage { .. }));
     let told: Vec<_> = scores(&events).iter().map(|one| (one.weapon, one.miss_m, one.clock, one.point_m)).collect();
@@ -444,6 +452,13 @@ fn a_run_with_weapons_repeats_replays_and_restores_to_the_bit() {
     let mut again = attack();
     let (twin, _) = run(&mut again, &ground, 2_400);
     assert_eq!((whole.hash(), last.hash()), (again.hash(), twin.hash()));
+    let mut replayed = quiet();
+    assert_eq!(whole.record().len(), 3);
+    for stamped in whole.record() {
+        replayed.schedule(stamped.clone()).unwrap();
+    }
+    run(&mut replayed, &ground, 2_400);
+    assert_eq!(replayed.hash(), whole.hash());
     // Cut anywhere, also while a delay runs.
     let mut cut = attack();
     for step in 0..2_400 {
