@@ -206,6 +206,37 @@ fn a_delayed_burst_goes_along_with_what_it_struck_and_is_scored_where_it_struck(
 }
 
 #[test]
+fn one_burst_kills_and_hurts_the_share_that_the_curve_gives() {
+    let ground = plain();
+    let mut scene = armed(DVec3::new(0.0, 2_000.0, 0.0), 200.0);
+    let (own, count, radius_m) = (scene.own_id(), 400, 32.0);
+    // Lorries all round, their fronts to the middle: the nearest point of each is at the lethal radius, on the ground.
+    for i in 0..count {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / f64::from(count)).sin_cos();
+        let at = DVec2::new(sin, cos) * (radius_m + 3.7);
+        let start =
+            TargetStart { attitude: DQuat::from_rotation_y(sin.atan2(cos)), ..TargetStart::standing("truck", at) };
+        scene.add_target(&start).unwrap();
+    }
+    scene.order(load(own, "mk82", 1, DVec3::ZERO)).unwrap();
+    scene.order(arm(own, "mk82", Some(Fuze { trigger: Trigger::Impact, arming_s: 0.0 }))).unwrap();
+    scene.order(release(own, "mk82", 1, 1, 0.0, Aim::Place(DVec3::ZERO))).unwrap();
+    scene.step(&ground);
+    let id = scene.snapshot().projectiles[0].id;
+    let (position_m, velocity_mps) = (DVec3::Y * 50.0, DVec3::NEG_Y * 300.0);
+    scene.order(Command::Reposition { id, position_m, velocity_mps, attitude: DQuat::IDENTITY }).unwrap();
+    let (last, events) = run(&mut scene, &ground, 60);
+    let share = |of: fn(Damage) -> bool| {
+        last.targets.iter().filter(|target| of(target.damage)).count() as f64 / f64::from(count)
+    };
+    // Four standard deviations of a share of 400: 0.097 and 0.083.
+    let (killed, hurt) = (share(|damage| damage == Damage::Destroyed), share(|damage| damage != Damage::Intact));
+    assert!((killed - (-1f64).exp()).abs() < 0.097, "{killed}");
+    assert!((hurt - (-0.25f64).exp()).abs() < 0.083, "{hurt}");
+    assert_eq!(f64::from(scores(&events)[0].kills), killed * f64::from(count));
+}
+
+#[test]
 fn a_place_is_an_aim_and_short_and_long_left_and_right_are_told_by_the_clock() {
     let drop = |aim_m: DVec3| {
         let mut scene = armed(DVec3::new(0.0, 1_000.0, 0.0), 200.0);
@@ -338,8 +369,8 @@ fn a_column_drives_at_its_spacing_and_reacts_when_one_is_struck() {
     }
 }
 
-/// Trucks that drive round under an own aircraft that will release everything that it has.
-fn attack() -> Scene {
+/// Trucks that drive round under an own aircraft that is armed and will do nothing.
+fn quiet() -> Scene {
     let mut scene = armed(DVec3::new(-1_500.0, 900.0, 500.0), 220.0);
     let own = scene.own_id();
     for i in 0..10 {
@@ -354,6 +385,13 @@ fn attack() -> Scene {
         scene.order(load(own, weapon, rounds, at_m)).unwrap();
     }
     scene.order(arm(own, "mk82", Some(Fuze { trigger: Trigger::Delay(0.4), arming_s: 0.5 }))).unwrap();
+    scene
+}
+
+/// The same, and it will release everything that it has.
+fn attack() -> Scene {
+    let mut scene = quiet();
+    let own = scene.own_id();
     for (step, weapon, rounds) in [(10, "gsh23", 120), (20, "hydra70", 12), (40, "mk82", 6)] {
         let command = release(own, weapon, rounds, 1, 0.1, Aim::Nearest);
         scene.schedule(sim::scene::Stamped { step, command }).unwrap();
@@ -406,6 +444,7 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
 fn a_run_with_weapons_repeats_replays_and_restores_to_the_bit() {
     let ground = rough();
     let mut whole = attack();
+    whole.start_record();
     let (last, events) = run(&mut whole, &ground, 2_400);
     let hurt = events.iter().any(|event| matches!(event.what, Happening::Damage { .. }));
     let told: Vec<_> = scores(&events).iter().map(|one| (one.weapon, one.miss_m, one.clock, one.point_m)).collect();
@@ -413,6 +452,13 @@ fn a_run_with_weapons_repeats_replays_and_restores_to_the_bit() {
     let mut again = attack();
     let (twin, _) = run(&mut again, &ground, 2_400);
     assert_eq!((whole.hash(), last.hash()), (again.hash(), twin.hash()));
+    let mut replayed = quiet();
+    assert_eq!(whole.record().len(), 3);
+    for stamped in whole.record() {
+        replayed.schedule(stamped.clone()).unwrap();
+    }
+    run(&mut replayed, &ground, 2_400);
+    assert_eq!(replayed.hash(), whole.hash());
     // Cut anywhere, also while a delay runs.
     let mut cut = attack();
     for step in 0..2_400 {

@@ -143,9 +143,10 @@ fn a_release_that_is_too_low_is_known_and_the_least_height_is_safe() {
     let low = at(120.0, &mut random);
     let least_m = low.least_fall_m.unwrap();
     assert!(!low.safe && !low.armed && least_m > 120.0, "{low:?}");
+    assert_eq!(low.warning(), Some("TOO LOW TO ARM"));
     // In other wind and air the path is a little another: 5 % around.
     let enough = at(1.05 * least_m, &mut random);
-    assert!(enough.safe && enough.armed, "{least_m} {enough:?}");
+    assert!(enough.safe && enough.armed && enough.warning().is_none(), "{least_m} {enough:?}");
     let short = at(0.9 * least_m, &mut random);
-    assert!(!(short.safe && short.armed), "{least_m} {short:?}");
+    assert!(short.warning().is_some(), "{least_m} {short:?}");
 }

@@ -315,13 +315,14 @@ impl TargetStart {
                 "target.speed_mps: expected at most {most_mps} of its kind, found {found}"
             )));
         }
+        let route = Route::new(waypoints_m, self.speed_mps, turn_radps, self.loops)?;
         if !(self.ahead_s >= 0.0 && self.ahead_s * self.speed_mps <= MOST_AHEAD_M) {
             let found = self.ahead_s;
             return Err(Refused::new(format_args!(
                 "target.ahead_s: expected seconds for up to {MOST_AHEAD_M} m, found {found}"
             )));
         }
-        Route::new(waypoints_m, self.speed_mps, turn_radps, self.loops)
+        Ok(route)
     }
 }
 
@@ -377,6 +378,9 @@ mod tests {
         assert!(refused(with(vec![DVec2::ZERO], 1.0)).contains("expected legs"));
         assert!(refused(with(vec![DVec2::NAN], 1.0)).contains("route_m"));
         assert!(refused(with(vec![DVec2::X * 9.0], f64::NAN)).contains("speed_mps"));
+        for ahead_s in [f64::NAN, -1.0, 2e6] {
+            assert!(refused(TargetStart { ahead_s, ..with(vec![DVec2::X * 9.0], 1.0) }).contains("ahead_s"));
+        }
         assert!(refused(TargetStart { plan_m: DVec2::new(f64::INFINITY, 0.0), ..good.clone() }).contains("plan_m"));
         assert!(refused(TargetStart { attitude: DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), ..good }).contains("attitude"));
     }

@@ -126,6 +126,19 @@ impl std::fmt::Display for NoSolution {
     }
 }
 
+impl Solution {
+    /// What the crew must be warned of: a release now would be a dud, or too near to its own burst.
+    pub fn warning(&self) -> Option<&'static str> {
+        if !self.armed {
+            Some("TOO LOW TO ARM")
+        } else if !self.safe {
+            Some("TOO NEAR THE BURST")
+        } else {
+            None
+        }
+    }
+}
+
 impl Settings {
     /// Those for a weapon with its fuze as set.
     pub fn of(weapon: &Weapon, fuze: Fuze) -> Self {
