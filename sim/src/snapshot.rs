@@ -82,6 +82,8 @@ pub struct Snapshot {
     pub events_counted: u64,
     /// A hash over all of them.
     pub events_chain: u64,
+    /// The body that is the own aircraft, if it is one.
+    pub flown: Option<StableId>,
     /// Levers as the pilot has set them. Not part of the hash: what they do is.
     pub levers: Levers,
     /// Instruments of an own aircraft that is a rigid body. Not part of the hash: they follow from the rest.

@@ -50,8 +50,8 @@ pub struct Instruments {
 
 /// Left end of names, of bars, right end of bars, and of numbers; the first row, and from row to row.
 const NAME_X: f64 = -620.0;
-const BAR_X: [f64; 2] = [-556.0, -466.0];
-const VALUE_X: f64 = -458.0;
+const BAR_X: [f64; 2] = [-572.0, -502.0];
+const VALUE_X: f64 = -494.0;
 const TOP_Y: f64 = 178.0;
 const ROW: f64 = 19.0;
 

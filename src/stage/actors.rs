@@ -56,27 +56,29 @@ impl Cast {
 
     /// Everything of a snapshot that has a shape; the own aircraft only where it is seen from outside.
     pub fn shapes(&self, snapshot: &Snapshot, inside: bool) -> Vec<ObjectInstance> {
-        let own = (!inside).then(|| {
+        // An own aircraft that is a body is drawn as that.
+        let own = (!inside && snapshot.flown.is_none()).then(|| {
             let own = &snapshot.aircraft;
             let attitude = sim::frame::view_attitude(own.attitude);
             let position_m = own.position_m - attitude * DVec3::Y * AIRCRAFT_CG_M;
             ObjectInstance { class: Model::Aircraft, position_m, attitude, scale: 1.0, shade: 1.0 }
         });
         let in_body_axes = |one: &EntityView| sim::frame::view_attitude(one.attitude);
+        let seen = move |one: &&EntityView| !(inside && snapshot.flown == Some(one.id));
         own.into_iter()
-            .chain(cast(&snapshot.bodies, &self.bodies, in_body_axes))
-            .chain(cast(&snapshot.projectiles, &self.projectiles, in_body_axes))
-            .chain(cast(&snapshot.targets, &self.targets, |one| one.attitude))
+            .chain(cast(snapshot.bodies.iter().filter(seen), &self.bodies, in_body_axes))
+            .chain(cast(snapshot.projectiles.iter(), &self.projectiles, in_body_axes))
+            .chain(cast(snapshot.targets.iter(), &self.targets, |one| one.attitude))
             .collect()
     }
 }
 
 fn cast<'a>(
-    entities: &'a [EntityView],
+    entities: impl Iterator<Item = &'a EntityView> + 'a,
     parts: &'a [Part],
     attitude: impl Fn(&EntityView) -> DQuat + 'a,
 ) -> impl Iterator<Item = ObjectInstance> + 'a {
-    entities.iter().filter_map(move |one| {
+    entities.filter_map(move |one| {
         let (class, below_m) = parts.get(one.of as usize).copied().flatten()?;
         let attitude = attitude(one);
         let position_m = one.position_m - attitude * DVec3::Y * below_m;

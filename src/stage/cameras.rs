@@ -4,11 +4,11 @@
 //! so pictures of a paused or repeated flight are the same. An eye outside the cockpit stays above the ground.
 //! Attitudes turn view axes (x right, y up, z backward) into the world's.
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 use sim::Snapshot;
 use sim::input::Head;
 use terrain::Area;
-use terrain::features::model::Features;
+use terrain::features::model::{Features, PlacedClass};
 
 /// Places to see from, in the order in which one key goes through them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
@@ -35,7 +35,7 @@ pub const CAMERAS: [Camera; 6] =
 /// Distance behind and height over the aircraft of the chase camera, and distance of the one about it, metres.
 const CHASE_M: [f64; 2] = [24.0, 5.0];
 const ORBIT_M: f64 = 22.0;
-/// Height of an eye in a tower over its airfield, and of a person beside the way, metres.
+/// Height of an eye in a tower over its foot, and of a person beside the way, metres.
 const TOWER_M: f64 = 20.5;
 const PERSON_M: f64 = 1.8;
 /// A tower farther than this sees nothing of the flight, metres.
@@ -63,8 +63,8 @@ pub struct Eye {
 #[derive(Debug)]
 pub struct Cameras {
     now: Camera,
-    /// Eyes of towers.
-    towers: Vec<DVec3>,
+    /// Where towers stand, plan (x, z).
+    towers: Vec<DVec2>,
     /// Where the last weapon was, which way it went, and when.
     weapon: Option<(DVec3, DVec3, f64)>,
     free_m: Option<DVec3>,
@@ -94,10 +94,8 @@ impl Camera {
 impl Cameras {
     /// Of a world's features, beginning with one of them.
     pub fn new(features: &Features, begin: Camera) -> Self {
-        let eye = |airfield: &terrain::features::model::Airfield| {
-            DVec3::new(airfield.reference.x, airfield.level_m + TOWER_M, airfield.reference.y)
-        };
-        let towers = features.airfields.iter().map(eye).collect();
+        let towers = features.placed.iter().filter(|placed| placed.class == PlacedClass::ControlTower);
+        let towers = towers.map(|tower| tower.at).collect();
         Self { now: begin, towers, weapon: None, free_m: None, last_m: DVec3::ZERO }
     }
 
@@ -147,10 +145,10 @@ impl Cameras {
 
     /// The nearest tower in reach; else the next of the places beside the way.
     fn tower_m(&self, at_m: DVec3, way: DVec3, area: &Area) -> DVec3 {
-        let near = |tower: &&DVec3| tower.distance_squared(at_m);
+        let near = |tower: &&DVec2| tower.distance_squared(DVec2::new(at_m.x, at_m.z));
         let tower = self.towers.iter().min_by(|a, b| near(a).total_cmp(&near(b)));
-        if let Some(tower) = tower.filter(|tower| tower.distance(at_m) < TOWER_REACH_M) {
-            return *tower;
+        if let Some(tower) = tower.filter(|tower| near(tower) < TOWER_REACH_M * TOWER_REACH_M) {
+            return DVec3::new(tower.x, area.height_m(tower.x, tower.y).unwrap_or(at_m.y) + TOWER_M, tower.y);
         }
         // Places are fixed in the world: the eye jumps on when the aircraft is past one.
         let along = if way.x.abs() > way.z.abs() { DVec3::X } else { DVec3::Z };

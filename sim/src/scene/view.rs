@@ -131,6 +131,7 @@ impl Scene {
             height_above_ground_m: self.height_above_ground_m,
             controls: self.controls,
             levers: self.levers,
+            flown: self.flown,
             flags: Flags {
                 paused: self.clock.paused(),
                 frozen: self.freeze != Freeze::None,

@@ -2,7 +2,7 @@
 //!
 //! A step sets what it names and leaves the rest as it was. `hold` engages the autopilot of the own aircraft, which must
 //! then be a rigid body: an altitude above the sea or over the runway's level, a heading from true north or from the
-//! runway's course, a speed, or the runway's line itself; `fly = true` takes it out.
+//! runway's course, a speed, the runway's line itself or one between two places; `fly = true` takes it out.
 
 use super::laid::Laid;
 use super::own::Line;
@@ -32,7 +32,7 @@ pub(super) struct Step {
     command: Option<String>,
 }
 
-#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Hold {
     altitude_m: Option<f64>,
@@ -42,6 +42,9 @@ struct Hold {
     speed_mps: Option<f64>,
     #[serde(default)]
     runway: bool,
+    /// A line over the ground: latitude and longitude of two places on it.
+    #[serde(default, deserialize_with = "crate::file::rows")]
+    line: Vec<[f64; 2]>,
 }
 
 impl Step {
@@ -123,8 +126,19 @@ impl Hold {
             (None, Some(off_deg)) => Some(line("from_runway_deg")?.course_rad + off_deg.to_radians()),
             (true_deg, _) => true_deg.map(|deg| deg.to_radians() - laid.convergence_rad),
         };
-        let track =
-            if self.runway { line("runway").map(|line| Some((line.threshold, line.course_rad)))? } else { None };
+        let track = match (self.runway, self.line.as_slice()) {
+            (true, _) => line("runway").map(|line| Some((line.threshold, line.course_rad)))?,
+            (false, []) => None,
+            (false, [from, to]) => {
+                let (from, to) = (laid.place(*from, false)?.0, laid.place(*to, false)?.0);
+                let way = to - from;
+                Some((from, way.x.atan2(-way.y)))
+            }
+            (false, other) => {
+                let found = other.len();
+                return Err(Refused::new(format_args!("hold.line: expected two places, found {found}")));
+            }
+        };
         let holds = Holds { altitude_m, heading_rad, speed_mps: self.speed_mps, track };
         if holds.is_sound() {
             Ok(holds)
