@@ -128,6 +128,10 @@ pub struct FlyArgs {
     /// How fast, metres a second.
     #[arg(long, value_name = "V", value_parser = values::speed_mps, allow_hyphen_values = true)]
     pub speed_mps: Option<f64>,
+    /// What the pilot flies: `point_mass`, which always flies well; `trainer`, a light aircraft with an engine, wheels and a
+    /// stall, trimmed where the track begins; or a body's M.toml with the trainer's names of controls.
+    #[arg(long, value_name = "A", default_value = "point_mass")]
+    pub aircraft: String,
     /// How the picture is made.
     #[command(flatten)]
     pub view: ViewArgs,

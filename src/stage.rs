@@ -44,6 +44,13 @@ pub fn eye_m(snapshot: &Snapshot) -> DVec3 {
 /// View axes to the world's, for a head turned from the nose.
 pub fn attitude(snapshot: &Snapshot, head: &Head) -> DQuat {
     let nose = sim::frame::view_attitude(snapshot.aircraft.attitude);
+    // The airframe's shake before and in a stall; the head's turn about it.
+    let [up, right] = snapshot.instruments.map_or([0.0; 2], |shown| shown.shake_rad(snapshot.time_s));
+    let nose = if up == 0.0 && right == 0.0 {
+        nose
+    } else {
+        nose * DQuat::from_rotation_x(up) * DQuat::from_rotation_z(-right)
+    };
     (nose * DQuat::from_rotation_y(-head.right_rad) * DQuat::from_rotation_x(head.up_rad)).normalize()
 }
 
@@ -91,6 +98,9 @@ pub fn hud(world: &World, snapshot: &Snapshot, view: &View, head: &Head, caption
     let mut status = snapshot.flags.names();
     if snapshot.rate != 1.0 {
         status.push(&rate);
+    }
+    if snapshot.instruments.is_some_and(|shown| shown.stall_warning) {
+        status.push("STALL");
     }
     status.extend_from_slice(captions.status);
     let input = HudInput {

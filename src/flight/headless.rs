@@ -35,7 +35,7 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
     let plan = Plan::new(args, length, LOCKSTEP_HZ, &world, &scenery.area)?;
     let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
     let ground = scenery.scene_ground();
-    let mut scene = plan.scene(date);
+    let mut scene = plan.flight(date)?;
     let mut sun = Sun::new(&world, date)?;
     let head = Head::default();
     let frames = match length {

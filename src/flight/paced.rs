@@ -44,7 +44,7 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     let plan = Plan::new(args, length, hz, &world, &scenery.area)?;
     let date = args.view.time.unwrap_or_else(|| scenery::default_moment(&world));
     let ground = scenery.scene_ground();
-    let mut scene = plan.scene(date);
+    let mut scene = plan.flight(date)?;
     sim::lockstep(&mut scene, &ground, 1);
     // Held until the first picture, which takes as long as filling the window does.
     scene.clock.set_paused(true);

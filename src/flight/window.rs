@@ -166,7 +166,10 @@ impl<'a> Cockpit<'a> {
             let plan = Plan::new(self.args, self.length, LOCKSTEP_HZ, &self.world, &scenery.area)?;
             let date = self.args.view.time.unwrap_or_else(|| scenery::default_moment(&self.world));
             let ground = scenery.scene_ground();
-            let mut scene = plan.scene(date);
+            let mut scene = plan.flight(date)?;
+            if plan.aircraft.is_some() {
+                self.input.keyboard.set_throttle(scene.snapshot().controls.throttle);
+            }
             sim::lockstep(&mut scene, &ground, 1);
             // Held until the first picture is there.
             scene.clock.set_paused(true);

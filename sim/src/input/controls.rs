@@ -85,6 +85,22 @@ pub enum Command {
     Look(ViewLook),
     /// The head's turn ends.
     LookEnd,
+    /// Flaps out by a quarter.
+    FlapsOut,
+    /// Flaps in by a quarter.
+    FlapsIn,
+    /// Elevator trim nose up by a fiftieth.
+    TrimUp,
+    /// Elevator trim nose down.
+    TrimDown,
+    /// Mixture richer by a twentieth.
+    MixtureRich,
+    /// Mixture leaner.
+    MixtureLean,
+    /// Both wheel brakes, on at this call and off when the key is let go.
+    Brakes(bool),
+    /// Parking brake on or off.
+    ParkingBrake,
     /// Leaves the program.
     Quit,
 }
@@ -114,6 +130,15 @@ impl fmt::Display for Command {
             Self::Look(ViewLook::Down) => "look down",
             Self::Look(ViewLook::Back) => "look back",
             Self::LookEnd => "look where the nose points",
+            Self::FlapsOut => "flaps out",
+            Self::FlapsIn => "flaps in",
+            Self::TrimUp => "trim nose up",
+            Self::TrimDown => "trim nose down",
+            Self::MixtureRich => "mixture richer",
+            Self::MixtureLean => "mixture leaner",
+            Self::Brakes(true) => "brakes",
+            Self::Brakes(false) => "brakes off",
+            Self::ParkingBrake => "parking brake",
             Self::Quit => "quit",
         })
     }

@@ -71,6 +71,14 @@ pub const DEFAULT_KEYS: &[(&str, KeyAction)] = &[
     ("KeyL", Do(Command::Look(ViewLook::Right))),
     ("KeyI", Do(Command::Look(ViewLook::Up))),
     ("KeyK", Do(Command::Look(ViewLook::Down))),
+    ("KeyX", Do(Command::FlapsOut)),
+    ("KeyZ", Do(Command::FlapsIn)),
+    ("End", Do(Command::TrimUp)),
+    ("Home", Do(Command::TrimDown)),
+    ("Insert", Do(Command::MixtureRich)),
+    ("Delete", Do(Command::MixtureLean)),
+    ("KeyB", Do(Command::Brakes(true))),
+    ("KeyN", Do(Command::ParkingBrake)),
     ("Escape", Do(Command::Quit)),
 ];
 
@@ -105,8 +113,11 @@ impl Keyboard {
         let was_held = self.held.contains(&name);
         if !pressed {
             self.held.retain(|held| *held != name);
-            let look_ended = was_held && matches!(action, Do(Command::Look(_)));
-            return look_ended.then_some(Command::LookEnd);
+            return match action {
+                Do(Command::Look(_)) if was_held => Some(Command::LookEnd),
+                Do(Command::Brakes(true)) if was_held => Some(Command::Brakes(false)),
+                _ => None,
+            };
         }
         if was_held {
             return None;

@@ -158,7 +158,7 @@ coded!(AircraftState {
 });
 
 /// The pilot's commands that change a scene, by their number in a save; the others concern the picture alone.
-const PILOT: [input::Command; 11] = [
+const PILOT: [input::Command; 20] = [
     input::Command::Pause,
     input::Command::Freeze,
     input::Command::Reset,
@@ -170,6 +170,15 @@ const PILOT: [input::Command; 11] = [
     input::Command::DateBack,
     input::Command::RateUp,
     input::Command::RateDown,
+    input::Command::FlapsOut,
+    input::Command::FlapsIn,
+    input::Command::TrimUp,
+    input::Command::TrimDown,
+    input::Command::MixtureRich,
+    input::Command::MixtureLean,
+    input::Command::Brakes(true),
+    input::Command::Brakes(false),
+    input::Command::ParkingBrake,
 ];
 
 impl Command {
@@ -236,7 +245,7 @@ impl Coded for Command {
             0 => {
                 let found = from.take::<u8>()?;
                 let command = PILOT.get(usize::from(found)).copied();
-                Self::Pilot(command.ok_or_else(|| from.refuse(format_args!("pilot: expected 0..=10, found {found}")))?)
+                Self::Pilot(command.ok_or_else(|| from.refuse(format_args!("pilot: expected 0..=19, found {found}")))?)
             }
             1 => Self::Controls(from.take()?),
             2 => Self::Place(Box::new(from.take()?)),

@@ -101,6 +101,16 @@ impl Scene {
                     self.seek(self.track_m);
                 }
             }
+            input::Command::FlapsOut => self.levers.flaps = (self.levers.flaps + 0.25).min(1.0),
+            input::Command::FlapsIn => self.levers.flaps = (self.levers.flaps - 0.25).max(0.0),
+            input::Command::TrimUp => self.levers.trim = (self.levers.trim + 0.02).min(1.0),
+            input::Command::TrimDown => self.levers.trim = (self.levers.trim - 0.02).max(-1.0),
+            input::Command::MixtureRich => self.levers.mixture = (self.levers.mixture + 0.05).min(1.0),
+            input::Command::MixtureLean => self.levers.mixture = (self.levers.mixture - 0.05).max(0.0),
+            input::Command::Brakes(on) => self.levers.brakes = [f64::from(u8::from(on)); 2],
+            input::Command::ParkingBrake => {
+                self.levers.parking_brake = if self.levers.parking_brake > 0.5 { 0.0 } else { 1.0 };
+            }
             input::Command::TimeForward => later(&mut self.clock, HOUR_S),
             input::Command::TimeBack => later(&mut self.clock, -HOUR_S),
             input::Command::DateForward => later(&mut self.clock, MONTH_S),
