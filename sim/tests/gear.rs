@@ -113,6 +113,9 @@ fn without_brakes_it_rolls_down_the_slope() {
     assert!(body(&scene).position_m.distance(from) > 5.0, "{:?}", body(&scene));
 }
 
+/// Its name, the ground, position, velocity, attitude, and the causes that it may end with; none: whatever comes.
+type Case<'a> = (&'a str, &'a SceneGround, DVec3, DVec3, DQuat, &'a [EndReason]);
+
 #[test]
 fn hard_landings_end_with_their_cause_and_no_number_that_is_none() {
     let flat = SceneGround::heights(|_, _| Some(0.0));
@@ -125,7 +128,7 @@ fn hard_landings_end_with_their_cause_and_no_number_that_is_none() {
         sim::frame::attitude(sim::frame::Angles { heading_rad, pitch_rad, roll_rad })
     };
     let dive = 60f64.to_radians();
-    let cases: Vec<(&str, &SceneGround, DVec3, DVec3, DQuat, &[EndReason])> = vec![
+    let cases: Vec<Case> = vec![
         (
             "60 degrees down",
             &flat,
