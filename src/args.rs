@@ -131,6 +131,10 @@ pub struct FlyArgs {
     /// How fast, metres a second.
     #[arg(long, value_name = "V", value_parser = values::speed_mps, allow_hyphen_values = true)]
     pub speed_mps: Option<f64>,
+    /// What the pilot flies: `point_mass`, which always flies well; `trainer`, a light aircraft with an engine, wheels and a
+    /// stall, trimmed where the track begins; or a body's M.toml with the trainer's names of controls.
+    #[arg(long, value_name = "A", default_value = "point_mass")]
+    pub aircraft: String,
     /// Play these inputs (I.csv), as --record writes them, in the place of a pilot's.
     #[arg(long, value_name = "FILE")]
     pub inputs: Option<PathBuf>,

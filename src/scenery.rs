@@ -296,7 +296,9 @@ impl Scenery {
 
     /// The ground and what stands on it, as shells and bodies meet it.
     pub fn scene_ground(&self) -> sim::SceneGround {
-        sim::SceneGround::from(self.area.clone()).with_objects(self.standing.clone())
+        sim::SceneGround::from(self.area.clone())
+            .with_objects(self.standing.clone())
+            .with_cover(self.world.cover.clone())
     }
 
     /// Draws what was last followed, with strokes over it.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-const VERBS: [&str; 11] =
+const VERBS: [&str; 12] =
     ["fly", "bake", "info", "verify", "height", "sight", "simulate", "modes", "trajectory", "shot", "bench", "trade"];
 
 /// A folder that is nowhere.

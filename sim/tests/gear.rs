@@ -113,6 +113,9 @@ fn without_brakes_it_rolls_down_the_slope() {
     assert!(body(&scene).position_m.distance(from) > 5.0, "{:?}", body(&scene));
 }
 
+/// Its name, the ground, position, velocity, attitude, and the causes that it may end with; none: whatever comes.
+type Case<'a> = (&'a str, &'a SceneGround, DVec3, DVec3, DQuat, &'a [EndReason]);
+
 #[test]
 fn hard_landings_end_with_their_cause_and_no_number_that_is_none() {
     let flat = SceneGround::heights(|_, _| Some(0.0));
@@ -125,7 +128,7 @@ fn hard_landings_end_with_their_cause_and_no_number_that_is_none() {
         sim::frame::attitude(sim::frame::Angles { heading_rad, pitch_rad, roll_rad })
     };
     let dive = 60f64.to_radians();
-    let cases: Vec<(&str, &SceneGround, DVec3, DVec3, DQuat, &[EndReason])> = vec![
+    let cases: Vec<Case> = vec![
         (
             "60 degrees down",
             &flat,
@@ -270,4 +273,121 @@ fn out_of_fuel_it_windmills_and_the_mixture_cuts_it_off() {
     let shown = scene.instruments().unwrap();
     // Driven by the air: turning, but well below the 2,300 that full throttle gives.
     assert!(shown.rpm > 200.0 && shown.rpm < 2_000.0, "{shown:?}");
+}
+
+/// The trainer's file with something else in place of a part of it.
+fn changed(from: &str, to: &str) -> Result<Model, String> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/aircraft/trainer.toml");
+    let text = std::fs::read_to_string(&file).unwrap();
+    assert!(text.contains(from), "{from}");
+    Model::from_text(&file, &text.replace(from, to)).map_err(|error| error.to_string())
+}
+
+#[test]
+fn without_its_wheels_it_lands_on_its_belly_and_slides_to_a_stop() {
+    let mut bare = trainer();
+    bare.contacts.retain(|one| one.rolling.is_none() && one.name != "propeller");
+    let mut catalogue = Catalogue::new();
+    catalogue.add_model("trainer", bare).unwrap();
+    let far = AircraftState::level(DVec3::new(0.0, 9_000.0, 0.0), 0.0, 150.0);
+    let around = Surroundings::default();
+    let mut scene = Scene::furnished(far, UtcTime { unix_ns: 0 }, 120, around, Arc::new(catalogue)).unwrap();
+    let start = BodyStart {
+        model: "trainer".to_owned(),
+        position_m: DVec3::Y * 0.7,
+        velocity_mps: DVec3::new(0.0, -0.5, -28.0),
+        attitude: north(),
+        rates_radps: DVec3::ZERO,
+        fuel: None,
+    };
+    scene.add_body(&start).unwrap();
+    let ground = SceneGround::heights(|_, _| Some(0.0));
+    for _ in 0..60 * 120 {
+        scene.step(&ground);
+        let now = body(&scene);
+        assert!(now.position_m.is_finite() && now.position_m.y < 5.0, "{now:?}");
+    }
+    let now = body(&scene);
+    // v2 / (2 x 0.4 x g) is 100 m; the wing carries some of the weight at first.
+    assert_eq!(now.condition, Condition::OnGround, "{:?}", ended(&scene));
+    assert!(now.velocity_mps.length() < 1e-3 && (-400.0..-60.0).contains(&now.position_m.z), "{now:?}");
+}
+
+#[test]
+fn what_is_wrong_in_wheels_and_engine_is_named_with_its_key() {
+    for (from, to, told) in [
+        (
+            "steer = { control = \"rudder_norm\"",
+            "steer = { control = \"pedal_norm\"",
+            "wheel[0].steer: expected a control",
+        ),
+        ("radius_m = 0.18", "radius_m = 0.0", "wheel[0].radius_m: expected a number within"),
+        ("sliding_friction = 0.6", "sliding_friction = 0.9", "wheel[0].sliding_friction"),
+        ("part = \"tail\"", "part = \"wheel\"", "expected hull, wing_tip, tail or propeller"),
+        ("part = \"tail\"", "part = \"rotor\"", "rotor"),
+        ("throttle_control = \"throttle_norm\"", "throttle_control = \"lever\"", "engine.throttle_control"),
+        ("[1.4, -0.0720, -0.0600],", "[1.4, -0.0720, 0.0],", "propeller.coefficients: expected a last row"),
+        ("capacity_kg = 108.9", "capacity_kg = 1e5", "fuel.capacity_kg"),
+        ("warning_rad = 0.215", "warning_rad = 0.5", "stall: expected"),
+        ("per_s = 4.5", "per_s = 0.0", "controls.flaps_deg.per_s"),
+        ("and_table = \"ground_lift\"", "and_table = \"cushion\"", "found cushion"),
+    ] {
+        let error = changed(from, to).unwrap_err();
+        assert!(error.contains(told), "{to}: {error}");
+    }
+}
+
+#[test]
+fn any_stiffness_of_a_file_stands_at_thirty_steps_a_second() {
+    let ground = SceneGround::heights(|_, _| Some(0.0));
+    for newtons in ["5e5", "5e7", "9e8"] {
+        let model = changed("spring_Npm = 50000.0", &format!("spring_Npm = {newtons}")).unwrap();
+        let mut catalogue = Catalogue::new();
+        catalogue.add_model("stiff", model).unwrap();
+        let far = AircraftState::level(DVec3::new(0.0, 9_000.0, 0.0), 0.0, 150.0);
+        let around = Surroundings::default();
+        let mut scene = Scene::furnished(far, UtcTime { unix_ns: 0 }, 30, around, Arc::new(catalogue)).unwrap();
+        let start = BodyStart {
+            model: "stiff".to_owned(),
+            position_m: DVec3::Y * 1.3,
+            velocity_mps: DVec3::ZERO,
+            attitude: north(),
+            rates_radps: DVec3::ZERO,
+            fuel: None,
+        };
+        scene.add_body(&start).unwrap();
+        for _ in 0..10 * 30 {
+            scene.step(&ground);
+        }
+        let now = body(&scene);
+        assert!(now.condition == Condition::OnGround && now.velocity_mps.length() < 0.05, "{newtons}: {now:?}");
+    }
+}
+
+#[test]
+fn a_reset_puts_the_pilot_back_on_the_runway_and_slewing_carries_the_body_along() {
+    let ground = SceneGround::heights(|_, _| Some(0.0));
+    let mut scene = piloted();
+    let first = scene.aircraft().position_m;
+    for step in 0..20 * 120 {
+        circuit_step(&mut scene, step);
+        scene.step(&ground);
+    }
+    assert!(scene.aircraft().position_m.distance(first) > 100.0);
+    scene.command(sim::Command::Slew);
+    scene.set_controls(Controls { pitch: -1.0, throttle: 0.9, ..Controls::default() });
+    for _ in 0..120 {
+        scene.step(&ground);
+        assert!(body(&scene).position_m.distance(scene.aircraft().position_m) < 1e-6);
+    }
+    scene.command(sim::Command::Slew);
+    scene.step(&ground);
+    assert!(body(&scene).position_m.distance(scene.aircraft().position_m) < 1e-6);
+    scene.command(sim::Command::Reset);
+    scene.set_controls(Controls { throttle: 0.0, ..Controls::default() });
+    for _ in 0..5 * 120 {
+        scene.step(&ground);
+    }
+    let own = scene.aircraft();
+    assert!(own.position_m.distance(first) < 10.0 && own.condition == Condition::OnGround, "{own:?}");
 }

@@ -13,14 +13,20 @@ use crate::values::Altitude;
 use glam::DVec3;
 use sim::aircraft::{ALTITUDE_M, AircraftState};
 use sim::clock::DEFAULT_STEP_HZ;
-use sim::scene::Catalogue;
+use sim::file::FileError;
+use sim::handling::{self, Fixed};
+use sim::rigid::Model;
+use sim::scene::{BodyStart, Catalogue, Surroundings};
 use sim::situation::{BUILTIN, Situation};
 use sim::track::{Flight, ISSYK_KUL_FLIGHT, TrackError, TrackHeight};
-use sim::{Scene, Track, UtcTime};
+use sim::{Controls, Levers, Scene, Track, UtcTime};
 use std::path::Path;
+use std::sync::Arc;
 use terrain::store::World;
 use terrain::{Area, Geodetic};
 
+/// The embedded trainer.
+const TRAINER: &str = include_str!("../../assets/aircraft/trainer.toml");
 /// Speed of a straight track unless asked for, m/s.
 const SPEED_MPS: f64 = 250.0;
 /// Height of a diagonal track over the highest ground about it, metres.
@@ -63,6 +69,8 @@ pub enum Plan {
         track: Track,
         /// Where pictures are taken, however far is flown.
         pictures: Vec<PicturePlace>,
+        /// The rigid body that is flown instead of the track, trimmed at its start, and its speed, m/s.
+        aircraft: Option<(Arc<Model>, f64)>,
     },
     /// A situation, flown by its pilot or its script.
     Situation(Box<Situation>),
@@ -125,7 +133,7 @@ impl Plan {
                 PicturePlace { distance_m, name: format!("{:.1} km", distance_m / 1e3) }
             }));
         }
-        Ok(Self::Track { track, pictures })
+        Ok(Self::Track { track, pictures, aircraft: aircraft(args)? })
     }
 
     /// When it is flown, unless a date is asked for.
@@ -154,6 +162,7 @@ impl Plan {
     /// [`Failure::Failed`] if the world is none for the situation.
     pub fn scene(&self, world: &World, date: UtcTime, scripted: bool) -> Result<Scene, Failure> {
         match self {
+            Self::Track { track, aircraft: Some((model, speed_mps)), .. } => trimmed(track, model, *speed_mps, date),
             Self::Track { track, .. } => {
                 let mut scene = Scene::new(AircraftState::level(DVec3::new(0.0, 5_000.0, 0.0), 0.0, SPEED_MPS), date);
                 scene.fly_track(track.clone());
@@ -164,6 +173,42 @@ impl Plan {
                 .map_err(|error| Failure::Failed(error.to_string())),
         }
     }
+}
+
+/// A body that is trimmed where a track begins, flown by its pilot.
+fn trimmed(track: &Track, model: &Arc<Model>, speed_mps: f64, date: UtcTime) -> Result<Scene, Failure> {
+    let failed = |why: String| Failure::Failed(format!("{}: {why}", model.file.display()));
+    let refused = |why: sim::scene::Refused| failed(why.to_string());
+    let begins = track.state(0.0, 0.5);
+    let held = handling::level(model, begins.position_m.y, Fixed::Speed(speed_mps)).map_err(failed)?;
+    let heading_rad = begins.angles().heading_rad;
+    let pitch_rad = sim::rigid::motion::attitude(&held.y).to_euler(glam::EulerRot::ZYX).1;
+    let angles = sim::frame::Angles { heading_rad, pitch_rad, roll_rad: 0.0 };
+    let mut catalogue = Catalogue::new();
+    catalogue.add_model("own", (**model).clone()).map_err(refused)?;
+    let level = AircraftState::level(begins.position_m, heading_rad, speed_mps);
+    let around = Surroundings::default();
+    let mut scene = Scene::furnished(level, date, DEFAULT_STEP_HZ, around, Arc::new(catalogue)).map_err(refused)?;
+    let start = BodyStart {
+        model: "own".to_owned(),
+        position_m: level.position_m,
+        velocity_mps: level.velocity_mps,
+        attitude: sim::frame::attitude(angles),
+        rates_radps: DVec3::ZERO,
+        fuel: None,
+    };
+    let id = scene.add_body(&start).map_err(refused)?;
+    scene.order(sim::scene::Command::FlyBody { id }).map_err(refused)?;
+    let part = |stem: &str| {
+        handling::control(model, stem).map_or(0.0, |place| {
+            let (of, value) = (&model.controls[place], held.motion.controls[place]);
+            if value < 0.0 { -value / of.min } else { value / of.max }
+        })
+    };
+    scene.set_controls(Controls { throttle: part("throttle"), ..Controls::default() });
+    let mixture = if model.power.is_some() { part("mixture") } else { 1.0 };
+    scene.set_levers(Levers { trim: part("elevator_trim"), mixture, ..Levers::default() });
+    Ok(scene)
 }
 
 /// A situation by its name, or of a file.
@@ -179,6 +224,23 @@ fn situation(named: &Path) -> Result<Situation, Failure> {
         }
     };
     read.map_err(|error| Failure::Failed(error.to_string()))
+}
+
+/// The body that is asked for, with the speed that it begins at.
+fn aircraft(args: &FlyArgs) -> Result<Option<(Arc<Model>, f64)>, Failure> {
+    let unusable = |error: FileError| Failure::Misuse(error.to_string());
+    let model = match args.aircraft.as_str() {
+        "point_mass" => return Ok(None),
+        "trainer" => Model::from_text(Path::new("trainer"), TRAINER).map_err(unusable)?,
+        file if file.ends_with(".toml") => Model::read(Path::new(file)).map_err(unusable)?,
+        found => {
+            return Err(Failure::Misuse(format!(
+                "--aircraft: expected point_mass, trainer or a file M.toml, found {found}"
+            )));
+        }
+    };
+    let speed_mps = args.speed_mps.unwrap_or(0.65 * model.never_exceed_mps.unwrap_or(85.0));
+    Ok(Some((Arc::new(model), speed_mps)))
 }
 
 fn scenic(world: &World) -> Result<Track, Failure> {

@@ -82,7 +82,9 @@ pub fn level(model: &Arc<Model>, altitude_m: f64, fixed: Fixed) -> Result<Held, 
         motion.controls[place] = 0.6 * model.controls[place].max;
     }
     let initial = initial(altitude_m, DVec3::X * speed_mps);
-    let wanted = Trim { vary: vec![name("elevator")?, third, "pitch_deg".to_owned()], set };
+    // Hands off: by the trim where there is one.
+    let pitch = name("elevator_trim").or_else(|_| name("elevator"))?;
+    let wanted = Trim { vary: vec![pitch, third, "pitch_deg".to_owned()], set };
     let found = trim::trim(&mut motion, &initial, &wanted)?;
     let y = start::state(&motion.planet, &found.initial);
     motion.settle_shaft(&y);

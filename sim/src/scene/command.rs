@@ -306,7 +306,7 @@ impl Coded for Command {
             0 => {
                 let found = from.take::<u8>()?;
                 let command = PILOT.get(usize::from(found)).copied();
-                Self::Pilot(command.ok_or_else(|| from.refuse(format_args!("pilot: expected 0..=10, found {found}")))?)
+                Self::Pilot(command.ok_or_else(|| from.refuse(format_args!("pilot: expected 0..=19, found {found}")))?)
             }
             1 => Self::Controls(from.take()?),
             2 => Self::Place(Box::new(from.take()?)),

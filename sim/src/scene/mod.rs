@@ -72,6 +72,7 @@ use crate::aircraft::{self, AircraftState, FARTHEST_M};
 use crate::ballistics::targets::Target;
 use crate::clock::{Clock, DEFAULT_STEP_HZ};
 use crate::input::{Controls, Levers};
+use crate::rigid::gear::near;
 use crate::snapshot::{Mode, StableId};
 use crate::track::Track;
 use crate::utc::UtcTime;
@@ -255,6 +256,11 @@ impl Scene {
         let model = self.catalogue.model(&start.model)?;
         let (id, step_s) = (StableId(self.next_id), self.clock.step_s());
         let keys = self.turbulence_keys(id);
+        if near::most_pieces(&self.catalogue.models[model as usize].thing, step_s).is_none() {
+            return Err(Refused::new(format_args!(
+                "body: expected wheels and skids that a step of {step_s} s holds in 1,000 pieces, found stiffer ones"
+            )));
+        }
         let mut body = Body::new(start, model, &mut self.rigs[model as usize], &keys, &self.surroundings)?;
         body.look(&self.rigs[model as usize], step_s).map_err(|reason| {
             Refused::new(format_args!("body: expected one that steps of {step_s} s hold, found it {reason:?}"))

@@ -232,11 +232,12 @@ impl Contact {
         }
     }
 
-    /// Its stiffness (1/s2) and damping (1/s) in a body: what its strut and its grip can do to it.
+    /// Its stiffness (1/s2) and damping (1/s) in a body: what its strut, the stop at its end and its grip can do to it.
     pub fn modes(&self, mass_kg: f64, least_inertia_kgm2: f64, cg_m: DVec3) -> [f64; 2] {
         let arm = (self.at_m - cg_m).length() + self.radius_m;
         let moves = 1.0 / mass_kg + arm * arm / least_inertia_kgm2;
         let damping = self.compress_nspm.max(self.extend_nspm);
-        [self.spring_npm.max(self.grip_npm) * moves, damping.max(self.grip_nspm) * moves]
+        let spring_npm = if self.rolling.is_some() { (1.0 + STOP) * self.spring_npm } else { self.spring_npm };
+        [spring_npm.max(self.grip_npm) * moves, damping.max(self.grip_nspm) * moves]
     }
 }

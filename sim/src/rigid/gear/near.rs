@@ -53,6 +53,12 @@ pub(crate) fn mode_radps<'a>(model: &Model, cg_m: DVec3, contacts: impl Iterator
     0.5 * (damping + (damping * damping + 4.0 * spring).sqrt())
 }
 
+/// Pieces that a step takes with every contact on the ground; `None` if it is more than [`stiffness::MOST_PIECES`].
+pub(crate) fn most_pieces(model: &Model, dt_s: f64) -> Option<u32> {
+    let lambda = mode_radps(model, model.cg_m, model.contacts.iter());
+    stiffness::pieces(Integrator::Rk4, lambda, 0.0, dt_s)
+}
+
 /// The pose of a state.
 pub(crate) fn pose(motion: &RigidMotion, y: &State) -> Pose {
     let frame_from_body = glam::DMat3::from_quat(motion::attitude(y));
