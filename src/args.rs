@@ -305,6 +305,9 @@ pub struct BenchArgs {
     /// What to measure.
     #[arg(value_name = "SUBJECT", default_value = "all")]
     pub subject: Subject,
+    /// The world to measure over [default: the embedded one].
+    #[arg(long, value_name = "W")]
+    pub world: Option<PathBuf>,
 }
 
 /// `poligon trade`

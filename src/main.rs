@@ -21,7 +21,6 @@ mod scenery;
 mod stage;
 mod still;
 mod things;
-mod thread_time;
 mod trade;
 mod values;
 mod verbs;

@@ -120,6 +120,8 @@ pub enum Subject {
     Flight,
     /// What each thing on the ground costs.
     Scene,
+    /// Placing plants.
+    Plants,
     /// All of them.
     All,
 }

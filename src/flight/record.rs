@@ -7,7 +7,7 @@ use crate::report::{
 };
 use crate::scenery::{Heavens, Scenery};
 use crate::stage::{self, effects::Effects};
-use crate::thread_time;
+use terrain::thread_time;
 use glam::DVec3;
 use sim::Snapshot;
 use std::time::{Duration, Instant};

@@ -21,6 +21,7 @@ mod projection;
 mod pyramid;
 pub mod store;
 pub mod synthetic;
+pub mod thread_time;
 pub mod verify;
 
 pub use block::rings::{RingMasks, Rings};
