@@ -7,11 +7,11 @@ use crate::report::{
 };
 use crate::scenery::{Heavens, Scenery};
 use crate::stage::{self, effects::Effects};
-use terrain::thread_time;
 use glam::DVec3;
 use sim::Snapshot;
 use std::time::{Duration, Instant};
 use terrain::BlockIndex;
+use terrain::thread_time;
 use visual::camera::View;
 
 /// Start and prime of the 64-bit FNV-1a hash (G. Fowler, L. Noll, P. Vo, 1991).
