@@ -7,7 +7,7 @@ use terrain::block::window::MAX_BLOCKS;
 use visual::passes::canopy::CanopyTile;
 use visual::passes::lights::{LightInstance, LightsUniforms};
 use visual::passes::lines::Segment;
-use visual::passes::plants::{MOST_SPECIES, SpeciesEntry};
+use visual::passes::plants_kinds::{MOST_SPECIES, SpeciesEntry};
 use visual::passes::plants_seen::Stand;
 use visual::passes::terrain::{BlockEntry, WindowUniforms};
 use visual::shaders;

@@ -6,7 +6,8 @@
 //! Invariant: a tile's origin is subtracted from the eye in f64; what a world does not have makes no [`CanopyPass`].
 
 use super::TargetFormat;
-use super::plants::{filled, layout, uniform, write};
+use super::bindings::{layout, texture, uniform};
+use super::upload::{filled, mip};
 use crate::camera::View;
 use crate::gpu::Gpu;
 use crate::shaders;
@@ -125,14 +126,7 @@ impl CanopyPass {
             device,
             "crowns",
             &[
-                (
-                    wgpu::ShaderStages::FRAGMENT,
-                    wgpu::BindingType::Texture {
-                        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                        view_dimension: wgpu::TextureViewDimension::D2,
-                        multisampled: false,
-                    },
-                ),
+                (wgpu::ShaderStages::FRAGMENT, texture(wgpu::TextureViewDimension::D2)),
                 (wgpu::ShaderStages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
             ],
         );
@@ -275,8 +269,8 @@ fn crowns(gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    for (level, texels) in (0..).zip(&mips) {
-        write(&gpu.queue, &texture, level, 0, [side >> level; 2], texels);
+    for (level, texels) in (0..).zip(mips) {
+        mip(&gpu.queue, &texture, level, 0, [side >> level; 2], texels);
     }
     let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("crowns"),

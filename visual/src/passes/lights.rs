@@ -9,6 +9,7 @@
 
 use super::TargetFormat;
 use super::terrain::eye_uniforms;
+use super::upload::filled;
 use crate::camera::View;
 use crate::gpu::Gpu;
 use crate::shaders;
@@ -201,13 +202,8 @@ impl Tiles {
             match change {
                 Change::Left(tile) => drop(self.shown.remove(&tile)),
                 Change::Arrived(tile, made) if !made.instances.is_empty() => {
-                    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                        label: Some("lights"),
-                        size: made.bytes() as u64,
-                        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-                        mapped_at_creation: false,
-                    });
-                    gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&made.instances));
+                    let bytes = bytemuck::cast_slice(&made.instances);
+                    let buffer = filled(gpu, "lights", bytes, wgpu::BufferUsages::VERTEX);
                     let count = made.instances.len() as u32;
                     self.shown.insert(tile, Shown { buffer, count, by_day: made.by_day, range_m: made.range_m });
                 }

@@ -8,6 +8,7 @@
 
 use super::TargetFormat;
 use super::terrain::Terrain;
+use super::upload::filled;
 use crate::camera::View;
 use crate::gpu::Gpu;
 use crate::shaders;
@@ -165,16 +166,6 @@ impl OnDevice {
         if overlay.indices.is_empty() {
             return None;
         }
-        let buffer = |label, bytes: &[u8], usage| {
-            let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: bytes.len() as u64,
-                usage: usage | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
-            gpu.queue.write_buffer(&buffer, 0, bytes);
-            buffer
-        };
         let words: Vec<[u32; 5]> = overlay.vertices.iter().map(Vertex::words).collect();
         // Triangles come in the order of their kinds.
         let before = |kind: Kind| {
@@ -185,8 +176,8 @@ impl OnDevice {
         Some(Self {
             roads: before(Kind::Path)..before(Kind::Apron),
             count: overlay.indices.len() as u32,
-            vertices: buffer("overlay vertices", bytemuck::cast_slice(&words), wgpu::BufferUsages::VERTEX),
-            indices: buffer("overlay indices", bytemuck::cast_slice(&overlay.indices), wgpu::BufferUsages::INDEX),
+            vertices: filled(gpu, "overlay vertices", bytemuck::cast_slice(&words), wgpu::BufferUsages::VERTEX),
+            indices: filled(gpu, "overlay indices", bytemuck::cast_slice(&overlay.indices), wgpu::BufferUsages::INDEX),
         })
     }
 
