@@ -4,6 +4,7 @@
 //! 2 misuse.
 #![forbid(unsafe_code)]
 
+mod ahead;
 mod args;
 mod bench;
 mod failure;

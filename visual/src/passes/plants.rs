@@ -225,7 +225,7 @@ impl Plants {
         self.views.first().map_or_else(PlantCounts::default, |view| view.counts)
     }
 
-    /// Longest that a tile's plants took to place, milliseconds.
+    /// Longest that a tile's plants took to place, milliseconds of the thread's own time.
     pub fn placed_ms_max(&self) -> f64 {
         self.placed_ms_max
     }

@@ -16,11 +16,10 @@ fn nursery() -> Nursery {
     let side = grid.columns() - 1;
     let kinds = [CoverClass::MixedForest, CoverClass::Conifer, CoverClass::BuiltUp, CoverClass::Scrub];
     let cells = (0..side * side).map(|at| kinds[(at % side / 7 + at / side / 5) as usize % 4] as u8).collect();
-    // Low and wet, so that all of them grow.
     let mut landscape =
-        Landscape::bare(Arc::new(synthetic::ridges(grid, 3)), [13.9, 27.8, 55.6], Climate::new(0.8, 900.0));
+        Landscape::bare(Arc::new(synthetic::ridges(grid, 3)), [13.9, 27.8, 55.6], Climate::new(0.74, 1_500.0));
     landscape.cover = Arc::new(Cover::new(&grid, 1, cells).unwrap());
-    Nursery::new(Arc::new(landscape), 0.8)
+    Nursery::new(Arc::new(landscape), 0.74)
 }
 
 /// A plant as it is drawn: 0 mesh, 1 card, 2 triangle; the bits of its foot and height; its looks.
@@ -61,12 +60,23 @@ fn what_is_seen_is_what_every_plant_by_itself_says() {
     let nursery = nursery();
     let grid = *nursery.area().grid();
     let mut ways = [0; 3];
-    let views = [(1_000.0, -700.0, 40.0, 0.7, -0.1), (-2_000.0, 3_000.0, 900.0, 3.9, -0.6), (0.0, 0.0, 5.0, 5.2, 0.2)];
-    for (x, z, above_m, heading, pitch) in views {
-        let ground_m = nursery.area().height_m(x, z).unwrap();
-        let eye_m = DVec3::new(x, ground_m + above_m, z);
+    // Eyes in the thick of it: beside a plant of a full tile.
+    let full: Vec<DVec2> = (0..48 * 48)
+        .filter_map(|at| {
+            let tile = TileIndex { x: at % 48, z: at / 48 };
+            let planted = nursery.plants(&TIERS[2], tile, 1.0).plants;
+            let corner = corner_m(&grid, TIERS[2].side_m, tile);
+            (planted.len() > 1_000).then(|| planted[planted.len() / 2].plan_m(&TIERS[2], corner) + 3.0)
+        })
+        .collect();
+    let eyes = [full[0], full[full.len() / 2], full[full.len() - 1]];
+    for (eye, (above_m, heading, pitch)) in
+        eyes.into_iter().zip([(5.0, 0.7, -0.1), (60.0, 3.9, -0.6), (900.0, 5.2, -0.3)])
+    {
+        let ground_m = nursery.area().height_m(eye.x, eye.y).unwrap();
+        let eye_m = DVec3::new(eye.x, ground_m + above_m, eye.y);
         let view = View::fov_y(eye_m, attitude(heading, pitch, 0.2), 1.0, [1280, 720]);
-        let (frustum, eye) = (view.frustum(), DVec2::new(x, z));
+        let frustum = view.frustum();
         let (mut fast, mut slow) = (Vec::new(), Vec::new());
         let mut seen = Seen::default();
         // What a view before saw must not stay.
