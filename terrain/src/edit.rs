@@ -11,11 +11,12 @@
 //!
 //! Invariant others rely on: a crater smaller than the step changes no post; a void post stays void under a crater.
 
+use crate::block::light::Walk;
 use crate::block::mesh::TILE;
 use crate::field::{Corner, Field, MAX_HEIGHT_M};
 use crate::grid::{BlockIndex, CELLS, Grid, PostRect};
 use crate::pyramid::Range;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
@@ -241,25 +242,28 @@ impl Changed {
         self.meets(block, MAP_REACH)
     }
 
-    /// Whether a block's light may have changed, for a direction towards the sun: by a normal, by what of the sky is seen,
+    /// Whether a block's light may have changed, for a walk towards the sun: by a normal, by what of the sky is seen,
     /// or by a shadow. `lowest_m` is the block's lowest ground, on which a shadow is longest.
-    pub fn reaches_light(&self, grid: &Grid, block: BlockIndex, to_sun: DVec3, lowest_m: f32) -> bool {
+    pub(crate) fn reaches_light(&self, block: BlockIndex, walk: &Walk, lowest_m: f32) -> bool {
         self.meets(block, SKY_REACH)
             || self.parts.iter().any(|part| {
                 let (low, high) = offsets(part.rect, block);
-                crate::block::light::may_shade(grid.step_m, [low, high], part.greatest_m - lowest_m, to_sun)
+                walk.may_shade([low, high], part.greatest_m - lowest_m)
             })
     }
 
     /// Whether the square of plan from `low` to `high` (x, z, metres) or its surroundings changed: everything that stands in
     /// it takes its ground, slope and site from posts within a few steps.
     pub fn reaches_square(&self, grid: &Grid, low: DVec2, high: DVec2) -> bool {
-        let room_m = (MAP_REACH + 1) as f64 * grid.step_m;
-        self.parts.iter().any(|part| {
-            let at = |column: i64, row: i64| DVec2::new(grid.x_m(column), grid.z_m(row));
-            let (first, last) = (at(part.rect.column, part.rect.row), at(last_column(part.rect), last_row(part.rect)));
-            (first - room_m).cmple(high).all() && (last + room_m).cmpge(low).all()
-        })
+        let room_m = MAP_REACH as f64 * grid.step_m;
+        self.plans(grid).any(|(first, last)| (first - room_m).cmple(high).all() && (last + room_m).cmpge(low).all())
+    }
+
+    /// Plan rectangles (x, z, metres) that hold all ground that changed: cells with a changed post.
+    pub fn plans(&self, grid: &Grid) -> impl Iterator<Item = (DVec2, DVec2)> + use<'_> {
+        let grid = *grid;
+        let at = move |column: i64, row: i64| DVec2::new(grid.x_m(column), grid.z_m(row));
+        self.rects().map(move |rect| (at(rect.column - 1, rect.row - 1), at(last_column(rect) + 1, last_row(rect) + 1)))
     }
 
     /// The blocks of a grid that a test of this change holds for, of those near enough that it can.

@@ -10,7 +10,7 @@
 //! a smooth edge instead of steps. All rays of a block are parallel, so a row of texels takes each step together.
 //!
 //! Invariant others rely on: where a walk ends early shows in no texel, so what lies beyond the reach of a shadow
-//! ([`may_shade`]) does not either.
+//! ([`Walk::may_shade`]) does not either.
 
 use super::mesh::TILE;
 use crate::field::Field;
@@ -132,7 +132,10 @@ pub fn sun_seen(field: &Field, column: i64, row: i64, to_sun: DVec3, highest_m: 
 
 /// The walk of parallel rays towards the sun, one column or one row a step, whichever the sun is more along.
 #[derive(Debug, Clone, Copy)]
-struct Walk {
+pub(crate) struct Walk {
+    step_m: f64,
+    /// Towards the sun in plan, unit.
+    along: DVec2,
     elevation_rad: f64,
     by_column: bool,
     /// Columns or rows a step, 1 or -1.
@@ -151,7 +154,7 @@ struct Walk {
 }
 
 impl Walk {
-    fn new(step_m: f64, to_sun: DVec3) -> Self {
+    pub(crate) fn new(step_m: f64, to_sun: DVec3) -> Self {
         let level = to_sun.x.hypot(to_sun.z);
         let elevation_rad = to_sun.y.atan2(level);
         let by_column = to_sun.x.abs() >= to_sun.z.abs();
@@ -166,6 +169,8 @@ impl Walk {
             None
         };
         Self {
+            step_m,
+            along: DVec2::new(to_sun.x, to_sun.z) / level,
             elevation_rad,
             by_column,
             ahead: major.signum() as i64,
@@ -225,31 +230,29 @@ impl Walk {
             t * t * (3.0 - 2.0 * t)
         })
     }
-}
 
-/// Whether ground at most `rise_m` above a texel can take any sun from it, if it lies within a box of offsets from it, in
-/// posts east and south; never no where it does.
-pub fn may_shade(step_m: f64, [low, high]: [DVec2; 2], rise_m: f32, to_sun: DVec3) -> bool {
-    let walk = Walk::new(step_m, to_sun);
-    let level = DVec2::new(to_sun.x, to_sun.z);
-    if walk.even.is_some() {
-        return false;
-    }
-    // Distances in posts at which the ray is within the box; a post of room for the neighbour that a ray lies between.
-    let along = level / level.length();
-    let (mut enter, mut leave) = (0.0f64, walk.most as f64 * walk.stride_m / step_m);
-    for (direction, low, high) in [(along.x, low.x - 1.0, high.x + 1.0), (along.y, low.y - 1.0, high.y + 1.0)] {
-        if direction.abs() < 1e-9 {
-            if low > 0.0 || high < 0.0 {
-                return false;
-            }
-        } else {
-            let (one, other) = (low / direction, high / direction);
-            (enter, leave) = (enter.max(one.min(other)), leave.min(one.max(other)));
+    /// Whether ground at most `rise_m` above a texel can take any sun from it, if it lies within a box of offsets from it,
+    /// in posts east and south; never no where it does.
+    pub(crate) fn may_shade(&self, [low, high]: [DVec2; 2], rise_m: f32) -> bool {
+        if self.even.is_some() {
+            return false;
         }
+        // Distances in posts at which the ray is within the box; a post of room for the neighbour that a ray lies between.
+        let (mut enter, mut leave) = (0.0f64, self.most as f64 * self.stride_m / self.step_m);
+        let (low, high) = (low - 1.0, high + 1.0);
+        for (direction, low, high) in [(self.along.x, low.x, high.x), (self.along.y, low.y, high.y)] {
+            if direction.abs() < 1e-9 {
+                if low > 0.0 || high < 0.0 {
+                    return false;
+                }
+            } else {
+                let (one, other) = (low / direction, high / direction);
+                (enter, leave) = (enter.max(one.min(other)), leave.min(one.max(other)));
+            }
+        }
+        // A hair of room for rounding.
+        enter <= leave && (enter < 1.0 || f64::from(rise_m) / ((enter - 1e-6) * self.step_m) > self.clear - 1e-9)
     }
-    // A hair of room for rounding.
-    enter <= leave && (enter < 1.0 || f64::from(rise_m) / ((enter - 1e-6) * step_m) > walk.clear - 1e-9)
 }
 
 #[cfg(test)]

@@ -203,6 +203,12 @@ impl Landscape {
 }
 
 impl Payload {
+    /// Lowest ground of its tile, apron included, metres; infinite if all is void.
+    pub fn lowest_m(&self) -> f32 {
+        // min ignores NaN.
+        self.heights_m.iter().copied().fold(f32::INFINITY, f32::min)
+    }
+
     /// Bytes that go to the GPU, without indices.
     pub fn upload_bytes(&self) -> usize {
         size_of_val(&*self.heights_m) + self.light.len() + self.ground_map.len()

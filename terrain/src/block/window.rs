@@ -8,17 +8,20 @@
 //! in progress, light for a new sun. The row ahead is built before it is needed, so a shift only waits for its uploads;
 //! it commits when complete, until then the old window stands. A block turns finer a margin before it must and coarser
 //! a little behind that, so a builder's delay is never seen and no block flickers. Light is double-buffered and flips for all blocks together.
+//! A new version of the ground ([`Window::set_landscape`]) flips first, all blocks that it reaches in one update.
 //!
 //! Invariant others rely on: with the eye inside the window's middle two blocks, every block within `n/2 - 1` blocks is
 //! there; what is drawn depends on the eye's path only, not on time, when [`Settings::wait`] is set.
 
 mod ask;
+mod change;
 mod draws;
 mod follow;
 mod relight;
 mod switch;
 
 use self::ask::{Asked, Quiet};
+use self::change::{Change, Coming};
 use self::follow::Shift;
 use self::switch::indices_bytes;
 use super::builder::{BuildCost, Builder};
@@ -93,6 +96,8 @@ pub struct Resident {
     pub has_water: bool,
     /// Triangles at level 0: all that are not void.
     pub ground_triangles: u32,
+    /// Lowest ground of its tile, apron included.
+    lowest_m: f32,
     /// Fingerprint of its index list.
     list_hash: u64,
     /// Which light layers hold light for the sun of that layer.
@@ -133,11 +138,18 @@ pub struct Counters {
     pub upload_bytes_total: u64,
     /// Light flips.
     pub relights: u64,
+    /// Versions of the ground taken over.
+    pub changes: u64,
 }
 
 /// See the module.
 pub struct Window {
     landscape: Arc<Landscape>,
+    /// Number of the landscape: what comes back from a builder with another is stale.
+    number: u64,
+    /// The next version of the ground, being built, and what comes after it.
+    change: Option<Change>,
+    coming: Option<Coming>,
     settings: Settings,
     builder: Builder,
     slots: Vec<Option<Resident>>,
@@ -159,7 +171,7 @@ pub struct Window {
     jumping: bool,
     eye: DVec2,
     quiet: Option<Quiet>,
-    /// Light flips up to the start of this update.
+    /// Flips of light and ground up to the start of this update.
     quiet_flips: u64,
     /// The newest sun, to be lit for when the relight under way is done.
     next_sun: Option<DVec3>,
@@ -170,7 +182,7 @@ impl Window {
     /// A window with nothing in it yet; the first update fills it around the eye.
     pub fn new(landscape: Arc<Landscape>, mut settings: Settings, to_sun: DVec3) -> Self {
         settings.blocks = settings.blocks.clamp(4, MAX_BLOCKS) & !1;
-        let builder = Builder::new(landscape.clone(), settings.threads);
+        let builder = Builder::new(settings.threads);
         Self {
             builder,
             slots: vec![None; (settings.blocks * settings.blocks) as usize],
@@ -192,6 +204,9 @@ impl Window {
             next_sun: None,
             counters: Counters::default(),
             landscape,
+            number: 0,
+            change: None,
+            coming: None,
             settings,
         }
     }
@@ -263,16 +278,16 @@ impl Window {
             self.counters.upload_bytes = 0;
             return Vec::new();
         }
-        self.quiet_flips = self.counters.relights;
+        self.quiet_flips = self.flips();
         self.follow();
         if !self.started {
             self.build_all();
         }
         self.ask(speed_mps);
         if self.settings.wait {
-            while !self.asked.is_empty() {
+            while self.is_owed() {
                 match self.builder.wait() {
-                    Some(built) => self.take(built),
+                    Some((number, built)) => self.take(number, built),
                     None => break,
                 }
             }
@@ -283,12 +298,15 @@ impl Window {
             (true, true) => JUMP_BUDGET_BYTES,
             (true, false) => self.settings.budget_bytes,
         };
+        let changed_bytes = self.flip_change(&mut uploads);
+        left = left.saturating_sub(changed_bytes);
         let before = left;
         self.switch_rings(speed_mps, &mut uploads, &mut left);
         self.fill(&mut uploads, &mut left);
         self.relight(&mut uploads, &mut left);
+        self.begin_change();
         self.started = true;
-        self.counters.upload_bytes = before - left;
+        self.counters.upload_bytes = changed_bytes + before - left;
         self.counters.upload_bytes_total += self.counters.upload_bytes as u64;
         self.quiet = self.settled(speed_mps);
         uploads

@@ -95,11 +95,12 @@ fn what_a_change_does_not_reach_is_as_before_and_masks_are_those_of_the_new_post
         let grid = *ground.field().grid();
         for (heading, elevation) in [(0.6, 0.7), (2.1, 0.12), (4.0, 0.02), (5.1, -0.01), (0.0, 0.4), (3.0, -0.5)] {
             let to_sun = crate::frame::direction(heading, elevation);
+            let walk = Walk::new(grid.step_m, to_sun);
             let (after, changed) = before.edited(&[some_edit(&grid, &mut random)]).unwrap();
             assert_eq!(after.masks, RingMasks::new(&anew(after.ground.field()), rings.limits_m));
             for block in grid.blocks() {
                 let (old, new) = (before.payload(block, to_sun), after.payload(block, to_sun));
-                let lowest_m = old.range.least_m.min(new.range.least_m);
+                let lowest_m = old.lowest_m().min(new.lowest_m());
                 if !changed.reaches_surface(block) {
                     assert_eq!(bits(&old.heights_m), bits(&new.heights_m), "{block:?} of {changed:?}");
                     assert!((0..=3).all(|ring| before.mesh(block, ring) == after.mesh(block, ring)));
@@ -111,7 +112,7 @@ fn what_a_change_does_not_reach_is_as_before_and_masks_are_those_of_the_new_post
                     assert_eq!(old.ground_map, new.ground_map, "{block:?} of {changed:?}");
                     assert_eq!((old.range, old.ground_triangles), (new.range, new.ground_triangles));
                 }
-                if changed.reaches_light(&grid, block, to_sun, lowest_m) {
+                if changed.reaches_light(block, &walk, lowest_m) {
                     lights += 1;
                 } else {
                     assert_eq!(old.light, new.light, "{block:?} of {changed:?}, sun {to_sun}");

@@ -18,6 +18,7 @@ use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
+use terrain::edit::Changed;
 use terrain::near::{Change, NearTiles, Settings, TileIndex};
 use vegetation::detail::{self, WIDTHS};
 use vegetation::pictures;
@@ -75,6 +76,11 @@ struct TierTiles {
     shown: HashMap<TileIndex, Arc<Planted>>,
 }
 
+/// Plants a tile of a tier.
+fn maker(nursery: Arc<Nursery>, tier: Tier, share: f32) -> impl Fn(TileIndex) -> Planted + Send + 'static {
+    move |tile| nursery.plants(&tier, tile, share)
+}
+
 #[derive(Default)]
 struct ViewDraws {
     /// Cards, then triangles, and a group with them.
@@ -102,6 +108,7 @@ pub struct Plants {
     models: Vec<Place>,
     views: Vec<ViewDraws>,
     placed_ms_max: f64,
+    share: f32,
 }
 
 struct Pipelines {
@@ -131,9 +138,8 @@ impl Plants {
         let tiers = TIERS.map(|tier| {
             // Beyond the near zone the picture's ground is not the one that plants stand on.
             let tier = Tier { reach_m: tier.reach_m.min(near_m.max(500.0)), ..tier };
-            let nursery = nursery.clone();
             let settings = Settings { side_m: tier.side_m, reach_m: tier.reach_m, budget_bytes: BUDGET_BYTES, wait };
-            let tiles = NearTiles::new(&grid, settings, bytes, move |tile| nursery.plants(&tier, tile, share));
+            let tiles = NearTiles::new(&grid, settings, bytes, maker(nursery.clone(), tier, share));
             TierTiles { tier, tiles, shown: HashMap::new() }
         });
         let (vertices, indices, models) = models();
@@ -153,7 +159,15 @@ impl Plants {
             models,
             views: Vec::new(),
             placed_ms_max: 0.0,
+            share,
         })
+    }
+
+    /// Takes over a nursery on a new version of the ground.
+    pub fn set_nursery(&mut self, nursery: &Arc<Nursery>, changed: &Changed) {
+        for TierTiles { tier, tiles, .. } in &mut self.tiers {
+            tiles.remake_where(changed, maker(nursery.clone(), *tier, self.share));
+        }
     }
 
     /// Lets the tiles follow the eye.
@@ -163,7 +177,9 @@ impl Plants {
                 match change {
                     Change::Arrived(tile, planted) => {
                         self.placed_ms_max = self.placed_ms_max.max(planted.took_ms);
-                        if !planted.plants.is_empty() {
+                        if planted.plants.is_empty() {
+                            tier.shown.remove(&tile);
+                        } else {
                             tier.shown.insert(tile, planted);
                         }
                     }

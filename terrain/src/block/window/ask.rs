@@ -1,6 +1,7 @@
 //! What is asked of the builders, what comes back, and when there is nothing to ask.
 
 use super::Window;
+use super::change::Change;
 use super::switch::{margins, wanted_ring};
 use crate::block::builder::{Built, Job};
 use crate::grid::BlockIndex;
@@ -50,8 +51,10 @@ impl Window {
         self.ready.retain(|block, _| near(*block));
         let to_sun = self.suns[self.front];
         let (slots, asked) = (&self.slots, &mut self.asked);
-        let gone = self.builder.withdraw(|job| !near(job.block()));
-        gone.iter().for_each(|job| {
+        let number = self.number;
+        // What a change needs stays: its blocks are resident, or it is a few jobs too many.
+        let gone = self.builder.withdraw(|of, job| of == number && !near(job.block()));
+        gone.iter().for_each(|(_, job)| {
             asked.remove(&Asked::from(job));
         });
         let mut jobs = Vec::new();
@@ -93,12 +96,23 @@ impl Window {
                 jobs.push((-1e9 + distance(block), Job::Mesh { block, ring }));
             }
         }
-        self.builder.request(jobs);
+        self.builder.request(self.number, &self.landscape, jobs);
+        self.ask_change();
+    }
+
+    /// Whether a builder has been asked for anything that it has not given.
+    pub(super) fn is_owed(&self) -> bool {
+        !self.asked.is_empty() || self.change.as_ref().is_some_and(Change::is_owed)
+    }
+
+    /// Flips of light and ground so far.
+    pub(super) fn flips(&self) -> u64 {
+        self.counters.relights + self.counters.changes
     }
 
     pub(super) fn collect(&mut self) {
-        while let Some(built) = self.builder.try_take() {
-            self.take(built);
+        while let Some((number, built)) = self.builder.try_take() {
+            self.take(number, built);
             self.quiet = None;
         }
     }
@@ -116,9 +130,15 @@ impl Window {
 
     /// How far the eye may go before any block wants another ring; `None` while anything is owed.
     pub(super) fn settled(&self, speed_mps: f64) -> Option<Quiet> {
-        // A flip of the light in this very update has emptied what was built ahead.
-        let flipped = self.quiet_flips != self.counters.relights;
-        if flipped || !self.asked.is_empty() || self.shift.is_some() || self.jumping || self.relighting {
+        // A flip in this very update has emptied what was built ahead.
+        let flipped = self.quiet_flips != self.flips();
+        if flipped
+            || self.change.is_some()
+            || !self.asked.is_empty()
+            || self.shift.is_some()
+            || self.jumping
+            || self.relighting
+        {
             return None;
         }
         let grid = self.landscape.ground.field().grid();
@@ -139,7 +159,11 @@ impl Window {
         (reach_m > 0.0).then_some(Quiet { from: self.eye, reach_m, speed_mps, ahead })
     }
 
-    pub(super) fn take(&mut self, built: Built) {
+    pub(super) fn take(&mut self, number: u64, built: Built) {
+        if number != self.number {
+            // For the ground to come, or for one that is gone.
+            return self.take_changed(number, built);
+        }
         match built {
             Built::Payload(payload) => {
                 self.asked.remove(&Asked::Payload(payload.block));

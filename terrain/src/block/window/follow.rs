@@ -150,12 +150,13 @@ impl Window {
             let mut lit = [false; 2];
             lit[self.front] = true;
             let (range, has_water, ground_triangles) = (payload.range, payload.has_water, payload.ground_triangles);
+            let lowest_m = payload.lowest_m();
             uploads.push(Upload::Block { slot, layer: self.front, payload });
             let Some(level) = place(&mesh, slot, uploads, left) else { continue };
             let list_hash = mesh.hash();
             self.ranges[slot] = range;
             self.slots[slot] =
-                Some(Resident { block, ring, level, range, has_water, ground_triangles, list_hash, lit });
+                Some(Resident { block, ring, level, range, has_water, ground_triangles, lowest_m, list_hash, lit });
         }
         let moving = self.jumping || self.shift.is_some();
         if moving && self.wanted_blocks().all(|block| self.slots[self.slot(block)].is_some()) {

@@ -24,6 +24,7 @@ impl Window {
             self.relighting = true;
             self.quiet = None;
             self.slots.iter_mut().flatten().for_each(|resident| resident.lit[back] = false);
+            self.relight_change();
         }
     }
 
@@ -63,6 +64,7 @@ impl Window {
             self.lights.clear();
             self.ready.clear();
             self.slots.iter_mut().flatten().for_each(|resident| resident.lit[1 - back] = false);
+            self.relight_change();
             if let Some(to_sun) = self.next_sun.take() {
                 self.set_sun(to_sun);
             }
