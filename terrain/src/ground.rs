@@ -200,6 +200,15 @@ fn normal_in_cell([nw, ne, sw, se]: Cell, north_west: bool, step_m: f64) -> DVec
 }
 
 impl Area {
+    /// The same part of the next version of the ground ([`Field::edited`]) and what it changed.
+    ///
+    /// # Errors
+    /// [`EditError`] says which edit cannot be made; none is then.
+    pub fn edited(&self, edits: &[Edit]) -> Result<(Self, Changed), EditError> {
+        let ground = Ground { field: self.field.clone(), pyramid: self.pyramid.clone() };
+        ground.edited(edits).map(|(ground, changed)| (ground.whole(), changed))
+    }
+
     /// Where the posts lie.
     pub fn grid(&self) -> &Grid {
         self.field.grid()
