@@ -256,7 +256,7 @@ fn a_window_that_waits_shows_an_edit_in_its_next_update_as_one_made_over_it() {
     let mut random = StdRng::seed_from_u64(4);
     let mut window = window(true);
     let mut gpu = Gpu::default();
-    gpu.apply(window.update(DVec2::ZERO, 0.0));
+    gpu.apply(window.update(DVec2::new(-9_000.0, 0.0), 0.0));
     let mut newest = window.landscape().clone();
     for frame in 0..90 {
         // Shifts, ring switches and relights go on meanwhile.
@@ -268,7 +268,7 @@ fn a_window_that_waits_shows_an_edit_in_its_next_update_as_one_made_over_it() {
             newest = Arc::new(landscape);
             window.set_landscape(newest.clone(), &changed);
         }
-        let eye = DVec2::new(-9_000.0 + 250.0 * f64::from(frame), 90.0 * f64::from(frame));
+        let eye = DVec2::new(-9_000.0 + 150.0 * f64::from(frame), 90.0 * f64::from(frame));
         gpu.apply(window.update(eye, 300.0));
         assert!(!window.is_changing() && Arc::ptr_eq(window.landscape(), &newest), "frame {frame}");
         assert_eq!(window.late_blocks(), 0, "frame {frame}");
