@@ -52,3 +52,46 @@ impl Scenery {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenery::Look;
+    use crate::still::{self, Standpoint};
+    use crate::values::Quality;
+    use glam::{DVec2, DVec3};
+    use visual::capture::{self, Offscreen};
+
+    /// The same crater in the ground before the first picture, and after one was taken.
+    #[test]
+    fn a_picture_after_an_edit_is_that_of_a_ground_that_was_edited_before() {
+        if let Err(reason) = visual::Gpu::headless() {
+            println!("skipped: {reason}");
+            return;
+        }
+        let world = Arc::new(crate::bench::tests::tiny_world());
+        let edits = [Edit::Crater(Crater { centre_m: DVec2::new(0.0, -3_000.0), radius_m: 900.0, depth_m: 300.0 })];
+        let at = Standpoint {
+            eye_m: DVec3::new(0.0, 4_500.0, 1_000.0),
+            attitude: terrain::frame::attitude(0.0, -0.6, 0.0),
+            heavens: terrain::frame::direction(4.0, 0.15).into(),
+        };
+        let look = Look { size_px: [320, 180], ..Look::preset(Quality::Standard) };
+        let scenery = || {
+            let gpu = visual::Gpu::headless().expect("an adapter");
+            Scenery::new(gpu, capture::FORMAT, world.clone(), look)
+        };
+        let shot = |scenery: &mut Scenery| {
+            let target = Offscreen::new(&scenery.gpu, look.size_px).expect("a target");
+            still::take(scenery, &at, &target).expect("a picture")
+        };
+        let (mut before, mut after) = (scenery(), scenery());
+        before.edit_ground(&edits).expect("a crater");
+        let edited = shot(&mut before);
+        let unedited = shot(&mut after);
+        after.edit_ground(&edits).expect("a crater");
+        assert!(unedited.hash() != edited.hash(), "the crater shows");
+        assert_eq!(shot(&mut after).hash(), edited.hash());
+        assert_eq!(after.scene_ground().version(), 1);
+    }
+}

@@ -312,8 +312,8 @@ fn the_thread_flies_entities_and_takes_orders() {
 #[test]
 fn an_edited_ground_is_met_from_the_step_that_names_it() {
     let before = mountains();
-    let craters: Vec<Edit> = (0..81)
-        .map(|at| DVec2::new(f64::from(at % 9 - 4), f64::from(at / 9 - 4)) * 600.0)
+    let craters: Vec<Edit> = (0..361)
+        .map(|at| DVec2::new(f64::from(at % 19 - 9), f64::from(at / 19 - 9)) * 600.0)
         .map(|centre_m| Edit::Crater(Crater { centre_m, radius_m: 300.0, depth_m: 150.0 }))
         .collect();
     let after = before.edited(&craters).unwrap();
@@ -323,9 +323,9 @@ fn an_edited_ground_is_met_from_the_step_that_names_it() {
     assert!(before.edited(&[wrong]).is_err());
     let flown = |ground: &SceneGround| {
         let mut scene = busy();
-        let (half, early) = run(&mut scene, &before, 240);
+        let (half, early) = run(&mut scene, &before, 360);
         assert_eq!(half.ground_version, 0);
-        let (last, late) = run(&mut scene, ground, 360);
+        let (last, late) = run(&mut scene, ground, 960);
         assert_eq!(last.ground_version, ground.version());
         (scene.hash(), impacts(&early), impacts(&late))
     };
