@@ -11,6 +11,7 @@ mod failure;
 mod flight;
 mod fog_base;
 mod gpu_proof;
+mod ground_edit;
 mod hud;
 mod models;
 mod open_world;

@@ -5,11 +5,12 @@
 
 use crate::failure::Failure;
 use crate::scenery::Look;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::path::Path;
 use std::sync::Arc;
 use terrain::block::Landscape;
 use terrain::block::rings::NEAR_RADIUS_M;
+use terrain::edit::Changed;
 use terrain::features::index::ObjectIndex;
 use vegetation::place::Nursery;
 use visual::camera::View;
@@ -38,6 +39,7 @@ pub struct Things {
     own_models: Vec<(Model, Mesh)>,
     particles: Particles,
     lights: Option<Lights>,
+    latitude_rad: f64,
 }
 
 impl Things {
@@ -76,7 +78,36 @@ impl Things {
         });
         let overlay = overlay.flatten();
         let lights = lights.flatten();
-        Self { overlay, plants, canopy, objects, own_models: Vec::new(), particles, lights }
+        Self { overlay, plants, canopy, objects, own_models: Vec::new(), particles, lights, latitude_rad }
+    }
+
+    /// Takes over a new version of the ground: what stands where it changed is placed anew. `moved` are the middles in plan of
+    /// the things that `standing` has at other heights.
+    pub fn set_landscape(
+        &mut self,
+        landscape: &Arc<Landscape>,
+        standing: &Arc<ObjectIndex>,
+        moved: &[DVec2],
+        changed: &Changed,
+    ) {
+        if let Some(overlay) = &mut self.overlay {
+            overlay.set_landscape(landscape.clone(), changed);
+        }
+        if self.plants.is_some() || self.canopy.is_some() {
+            let nursery = Arc::new(Nursery::new(landscape.clone(), self.latitude_rad));
+            if let Some(plants) = &mut self.plants {
+                plants.set_nursery(&nursery, changed);
+            }
+            if let Some(canopy) = &mut self.canopy {
+                canopy.set_nursery(&nursery, changed);
+            }
+        }
+        if let Some(objects) = &mut self.objects {
+            objects.set_index(standing.clone(), moved);
+        }
+        if let Some(lights) = &mut self.lights {
+            lights.set_area(&landscape.ground.whole(), changed);
+        }
     }
 
     /// Streams around the eye and culls for a view. The terrain must have followed already.

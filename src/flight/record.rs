@@ -240,7 +240,7 @@ impl Record {
                     total: window.counters().upload_bytes_total,
                 },
                 memory_bytes: MemoryBytes {
-                    posts: size_of_val(world.field.heights_m()) as u64,
+                    posts: world.field.bytes() as u64,
                     pyramid: landscape.ground.pyramid().bytes() as u64,
                     payload_cpu: (landscape.masks.bytes() + window.waiting_bytes()) as u64,
                     payload_gpu: scenery.terrain.gpu_bytes() as u64,

@@ -10,6 +10,7 @@
 pub mod bake;
 pub mod block;
 mod clearance;
+pub mod edit;
 pub mod features;
 mod field;
 pub mod frame;
@@ -17,6 +18,7 @@ mod grid;
 mod ground;
 pub mod near;
 mod noise;
+pub mod paged;
 mod projection;
 mod pyramid;
 pub mod store;

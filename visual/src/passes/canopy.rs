@@ -15,6 +15,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::sync::Arc;
+use terrain::edit::Changed;
 use terrain::near::{Change, NearTiles, Settings, TileIndex};
 use vegetation::canopy::{self, Canopy};
 use vegetation::pictures;
@@ -157,6 +158,12 @@ impl CanopyPass {
         })
     }
 
+    /// Takes over a nursery on a new version of the ground.
+    pub fn set_nursery(&mut self, nursery: &Arc<Nursery>, changed: &Changed) {
+        let nursery = nursery.clone();
+        self.tiles.remake_where(changed, move |tile| canopy::canopy(&nursery, tile));
+    }
+
     /// Lets the tiles follow the eye.
     pub fn follow(&mut self, gpu: &Gpu, eye_m: DVec3, speed_mps: f64) {
         for change in self.tiles.update(DVec2::new(eye_m.x, eye_m.z), speed_mps) {
@@ -172,8 +179,7 @@ impl CanopyPass {
                         filled(gpu, "canopy", bytemuck::cast_slice(&canopy.indices), wgpu::BufferUsages::INDEX);
                     self.shown.insert(tile, Shown { canopy, vertices, indices });
                 }
-                Change::Arrived(..) => {}
-                Change::Left(tile) => {
+                Change::Arrived(tile, _) | Change::Left(tile) => {
                     self.shown.remove(&tile);
                 }
             }

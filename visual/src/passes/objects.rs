@@ -21,7 +21,7 @@ use crate::models::{Mesh, Vertex, glb};
 use crate::shaders;
 use bytemuck::{Pod, Zeroable};
 use glam::{DQuat, DVec2, DVec3, Vec3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use terrain::Grid;
 use terrain::features::index::ObjectIndex;
@@ -197,8 +197,11 @@ impl Objects {
         let Some(tiles) = &mut self.tiles else { return };
         for change in tiles.update(DVec2::new(eye_m.x, eye_m.z), speed_mps) {
             match change {
-                Change::Arrived(at, tile) if tile.is_empty() => drop(self.resident.remove(&at)),
                 Change::Arrived(at, tile) => {
+                    self.forget(at);
+                    if tile.is_empty() {
+                        continue;
+                    }
                     let buffers = (!tile.mesh.indices.is_empty()).then(|| {
                         let vertices = bytemuck::cast_slice(&tile.mesh.vertices);
                         let indices = bytemuck::cast_slice(&tile.mesh.indices);
@@ -210,13 +213,29 @@ impl Objects {
                     self.gpu_bytes += tile.bytes();
                     self.resident.insert(at, Resident { tile, buffers });
                 }
-                Change::Left(at) => {
-                    if let Some(gone) = self.resident.remove(&at) {
-                        self.gpu_bytes = self.gpu_bytes.saturating_sub(gone.tile.bytes());
-                    }
-                }
+                Change::Left(at) => self.forget(at),
             }
         }
+    }
+
+    fn forget(&mut self, at: TileIndex) {
+        if let Some(gone) = self.resident.remove(&at) {
+            self.gpu_bytes = self.gpu_bytes.saturating_sub(gone.tile.bytes());
+        }
+    }
+
+    /// Takes over an index in which things stand anew; `moved` are their middles in plan (x, z).
+    pub fn set_index(&mut self, index: Arc<ObjectIndex>, moved: &[DVec2]) {
+        let Some(tiles) = &mut self.tiles else { return };
+        let grid = self.grid;
+        let corner = DVec2::new(grid.west_m, grid.north_m);
+        let at: BTreeSet<TileIndex> = moved
+            .iter()
+            .map(|middle| ((middle - corner) / TILE_M).floor().as_ivec2())
+            .map(|tile| TileIndex { x: tile.x, z: tile.y })
+            .collect();
+        let make = move |tile| object_tiles::made(&index, &grid, tile, TILE_M);
+        tiles.remake(make, |tile| at.contains(&tile));
     }
 
     /// Culls for a view and uploads its instances.

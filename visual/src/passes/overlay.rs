@@ -19,6 +19,7 @@ use std::sync::{Arc, OnceLock};
 use terrain::BlockIndex;
 use terrain::block::Landscape;
 use terrain::block::overlay::{self, Kind, Overlay, Overlays, Vertex};
+use terrain::edit::Changed;
 use terrain::near::{Change, NearTiles, Settings, TileIndex};
 
 /// Bytes uploaded in a frame; one block of a town is about a MiB.
@@ -75,12 +76,7 @@ impl OverlayPass {
             budget_bytes: BUDGET_BYTES,
             wait: settings.wait,
         };
-        // Made ready by the thread that uses it.
-        let overlays = OnceLock::new();
-        let tiles = NearTiles::new(&grid, settings, Overlay::upload_bytes, move |tile: TileIndex| {
-            let overlays = overlays.get_or_init(|| Overlays::new(&landscape));
-            overlays.block(BlockIndex { x: tile.x, z: tile.z })
-        });
+        let tiles = NearTiles::new(&grid, settings, Overlay::upload_bytes, maker(landscape));
         Some(Self {
             tiles,
             blocks: HashMap::new(),
@@ -88,6 +84,11 @@ impl OverlayPass {
             draws: Vec::new(),
             triangles: 0,
         })
+    }
+
+    /// Takes over a new version of the ground.
+    pub fn set_landscape(&mut self, landscape: Arc<Landscape>, changed: &Changed) {
+        self.tiles.remake_where(changed, maker(landscape));
     }
 
     /// Blocks within reach that were not there after the last update.
@@ -110,8 +111,10 @@ impl OverlayPass {
         for change in self.tiles.update(DVec2::new(eye_m.x, eye_m.z), speed_mps) {
             match change {
                 Change::Arrived(tile, made) => {
-                    if let Some(there) = OnDevice::new(gpu, &made) {
-                        self.blocks.insert(BlockIndex { x: tile.x, z: tile.z }, there);
+                    let block = BlockIndex { x: tile.x, z: tile.z };
+                    match OnDevice::new(gpu, &made) {
+                        Some(there) => drop(self.blocks.insert(block, there)),
+                        None => drop(self.blocks.remove(&block)),
                     }
                 }
                 Change::Left(tile) => {
@@ -159,6 +162,12 @@ impl OverlayPass {
             }
         }
     }
+}
+
+/// Makes a block's triangles; made ready by the thread that uses it.
+fn maker(landscape: Arc<Landscape>) -> impl Fn(TileIndex) -> Overlay + Send + 'static {
+    let overlays = OnceLock::new();
+    move |tile| overlays.get_or_init(|| Overlays::new(&landscape)).block(BlockIndex { x: tile.x, z: tile.z })
 }
 
 impl OnDevice {

@@ -20,6 +20,7 @@ use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
+use terrain::edit::Changed;
 use terrain::near::{Change, NearTiles, Settings, TileIndex};
 use vegetation::place::{Nursery, Planted, TIERS, Tier};
 use vegetation::species::SHAPES;
@@ -49,6 +50,11 @@ struct TierTiles {
     reaches: Reaches,
     tiles: NearTiles<Planted>,
     shown: BTreeMap<TileIndex, Arc<Planted>>,
+}
+
+/// Plants a tile of a tier.
+fn maker(nursery: Arc<Nursery>, tier: Tier, share: f32) -> impl Fn(TileIndex) -> Planted + Send + 'static {
+    move |tile| nursery.plants(&tier, tile, share)
 }
 
 struct ViewDraws {
@@ -81,6 +87,7 @@ pub struct Plants {
     /// What the view last prepared sees; kept for its memory.
     seen: Seen,
     placed_ms_max: f64,
+    share: f32,
 }
 
 struct Pipelines {
@@ -110,9 +117,8 @@ impl Plants {
         let tiers = TIERS.map(|tier| {
             // Beyond the near zone the picture's ground is not the one that plants stand on.
             let tier = Tier { reach_m: tier.reach_m.min(near_m.max(500.0)), ..tier };
-            let nursery = nursery.clone();
             let settings = Settings { side_m: tier.side_m, reach_m: tier.reach_m, budget_bytes: BUDGET_BYTES, wait };
-            let tiles = NearTiles::new(&grid, settings, bytes, move |tile| nursery.plants(&tier, tile, share));
+            let tiles = NearTiles::new(&grid, settings, bytes, maker(nursery.clone(), tier, share));
             TierTiles { tier, reaches: Reaches::of(&tier), tiles, shown: BTreeMap::new() }
         });
         let (vertices, indices, models) = models();
@@ -133,7 +139,15 @@ impl Plants {
             views: Vec::new(),
             seen: Seen::default(),
             placed_ms_max: 0.0,
+            share,
         })
+    }
+
+    /// Takes over a nursery on a new version of the ground.
+    pub fn set_nursery(&mut self, nursery: &Arc<Nursery>, changed: &Changed) {
+        for TierTiles { tier, tiles, .. } in &mut self.tiers {
+            tiles.remake_where(changed, maker(nursery.clone(), *tier, self.share));
+        }
     }
 
     /// Lets the tiles follow the eye.
@@ -143,7 +157,9 @@ impl Plants {
                 match change {
                     Change::Arrived(tile, planted) => {
                         self.placed_ms_max = self.placed_ms_max.max(planted.took_ms);
-                        if !planted.plants.is_empty() {
+                        if planted.plants.is_empty() {
+                            tier.shown.remove(&tile);
+                        } else {
                             tier.shown.insert(tile, planted);
                         }
                     }

@@ -16,8 +16,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
 use std::sync::Arc;
 use terrain::block::mesh::TILE;
-use terrain::block::payload::Mesh;
+use terrain::block::payload::{Landscape, Mesh};
 use terrain::block::window::{Draw, Level, MAX_BLOCKS, Upload, Window};
+use terrain::edit::Changed;
 use terrain::{BlockIndex, CELLS, Grid};
 
 /// Beyond this the detail texture's mips are as good as even: a pixel spans more than its longest feature.
@@ -191,6 +192,11 @@ impl Terrain {
     /// How the ground is drawn.
     pub fn look(&self) -> TerrainLook {
         self.look
+    }
+
+    /// Takes over a new version of the ground; see [`Window::set_landscape`].
+    pub fn set_landscape(&mut self, landscape: Arc<Landscape>, changed: &Changed) {
+        self.window.set_landscape(landscape, changed);
     }
 
     /// Lets the window follow the eye and the sun, and uploads what it asks for.
