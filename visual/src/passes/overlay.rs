@@ -64,7 +64,7 @@ impl OverlayPass {
         landscape: Arc<Landscape>,
         settings: OverlaySettings,
     ) -> Option<Self> {
-        if !overlay::any(&landscape.features) {
+        if !overlay::any(&landscape.features, &landscape.lakes) {
             return None;
         }
         let grid = *landscape.ground.field().grid();
