@@ -2,7 +2,8 @@
 //!
 //! 64 x 64 RGBA8: red, green, blue are the square roots of the linear albedo, so the dark colours of forest and water
 //! keep their steps; alpha is 0..255 for a shore distance of +-[`SHORE_RAMP_M`], over 127 in water, so that a shader finds
-//! a smooth shore line between texels. Texels 0 and 63 lie on the block's borders and are computed from the same posts
+//! a smooth shore line between texels; within [`LAND_COLOURED_TEXELS`] of the shore water has the land's colour, and
+//! shaders their own. Texels 0 and 63 lie on the block's borders and are computed from the same posts
 //! and the same noise by both neighbours: no seam.
 //!
 //! Colours follow [`crate::features::cover_rules`].
@@ -29,6 +30,10 @@ pub const MAP_BYTES: usize = (SIDE * SIDE * 4) as usize;
 
 /// Shore distance at which alpha saturates, metres, at a post step of 200 m; scales with the step.
 pub const SHORE_RAMP_M: f64 = 400.0;
+
+/// How far from its outline a texel in water has the land's colour, texels: a place just outside is mixed from texels up to
+/// 1.41 away.
+const LAND_COLOURED_TEXELS: f64 = 1.5;
 
 /// What lies on the ground beside its water, as far as the ground map shows it.
 pub struct Dress<'a> {
@@ -67,15 +72,18 @@ pub fn ground_map(
                 grid.west_m + (first_column as f64 + u) * grid.step_m,
                 grid.north_m + (first_row as f64 + v) * grid.step_m,
             );
-            let shore = shore_m(x_m, z_m).min(sea_m(field, first_column, first_row, u, v));
-            let mut albedo = albedo(site, climate, x_m, z_m, shore as f32);
-            if shore >= 0.0 {
+            let (outline, sea) = (shore_m(x_m, z_m), sea_m(field, first_column, first_row, u, v));
+            let shore = outline.min(sea);
+            // Texels in water whose colour reaches over the outline have the land's: the water's own is drawn to the metre.
+            let land = sea >= 0.0 && outline >= -LAND_COLOURED_TEXELS * texel_m;
+            let mut albedo = albedo(site, climate, x_m, z_m, if land { shore.max(0.0) } else { shore } as f32);
+            if land {
                 if let Some(imagery) = dress.imagery {
                     let factors = imagery.factors(grid, x_m, z_m);
                     albedo = std::array::from_fn(|c| albedo[c] * factors[c]);
                 }
                 if covered {
-                    albedo = with_features(albedo, dress.cover, x_m, z_m, texel_m, shore);
+                    albedo = with_features(albedo, dress.cover, x_m, z_m, texel_m, shore.max(0.0));
                 }
                 for (kind, shares) in coverage.iter().filter(|(_, shares)| !shares.is_empty()) {
                     albedo = mix(albedo, strip_colour(*kind), shares[(row * SIDE + column) as usize]);
