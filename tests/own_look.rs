@@ -34,8 +34,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-const BAKE: [&str; 9] =
-    ["bake", "--dem", "N42E007.hgt", "--step", "50", "--centre", "42.5,7.5", "--size-km", "6x6"];
+const BAKE: [&str; 9] = ["bake", "--dem", "N42E007.hgt", "--step", "50", "--centre", "42.5,7.5", "--size-km", "6x6"];
 
 fn bake(folder: &Path, more: &[&str]) -> Value {
     json(folder, &[&BAKE[..], more].concat())
@@ -130,7 +129,8 @@ fn photographs_lie_on_the_ground_where_they_belong_and_are_named() {
         let texels = imagery.texels(&grid, terrain::BlockIndex { x: 1, z: 1 }).expect("texels");
         assert_eq!((grid.blocks_x, texels.len()), (4, 64 * 64 * 4));
         // Block 1 ends at the middle: all of it is red but for its last column, of which a half is.
-        for texel in texels.as_chunks::<4>().0.iter().enumerate().filter(|(at, _)| at % 64 < 62).map(|(_, texel)| texel) {
+        for texel in texels.as_chunks::<4>().0.iter().enumerate().filter(|(at, _)| at % 64 < 62).map(|(_, texel)| texel)
+        {
             assert!(texel[0] > 2 * texel[1] && texel[3] == 255, "{file}: {texel:?}");
         }
     }
@@ -246,7 +246,8 @@ fn a_shape_of_the_worlds_own_is_seen_and_outlives_a_new_bake() {
     std::fs::remove_file(&models).unwrap();
     std::fs::create_dir(&models).unwrap();
     std::fs::write(models.join("mast.glb"), "no shape").unwrap();
-    let output = poligon(folder, &["shot", "m.world", "--eye", "42.4994,7.5,20:agl", "--look", "0,0", "--out", "x.png"]);
+    let output =
+        poligon(folder, &["shot", "m.world", "--eye", "42.4994,7.5,20:agl", "--look", "0,0", "--out", "x.png"]);
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.code() == Some(1) && told.contains("mast.glb") && told.contains("expected"), "{told}");
 }

@@ -15,7 +15,7 @@ fn map_at(local: vec3<f32>, slot: vec2<f32>) -> vec4<f32> {
 
 // Albedo of the water of a ground map's texel: near a shore the map has the land's, and water its own.
 fn water_bed(map: vec4<f32>) -> vec3<f32> {
-    return mix(vec3<f32>(0.030, 0.085, 0.090), map.rgb * map.rgb, smoothstep(0.80, 0.95, map.a));
+    return mix(vec3<f32>(0.030, 0.085, 0.090), map.rgb * map.rgb, smoothstep(0.84, 0.97, map.a));
 }
 
 // Where ripples are in the detail texture.

@@ -87,13 +87,7 @@ impl OverlayPass {
             let overlays = overlays.get_or_init(|| Overlays::new(&landscape));
             overlays.block(BlockIndex { x: tile.x, z: tile.z })
         });
-        Some(Self {
-            tiles,
-            blocks: HashMap::new(),
-            pipelines,
-            draws: Vec::new(),
-            triangles: 0,
-        })
+        Some(Self { tiles, blocks: HashMap::new(), pipelines, draws: Vec::new(), triangles: 0 })
     }
 
     /// Blocks within reach that were not there after the last update.

@@ -195,7 +195,8 @@ fn nearest_side(low: DVec2, high: DVec2, at: DVec2) -> (DVec2, f64) {
 fn along(low: DVec2, high: DVec2, at: DVec2) -> f64 {
     let size = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
     let share = (at - low) / size;
-    let sides = [(share.x, share.y), (1.0 - share.y, 1.0 + share.x), (1.0 - share.x, 3.0 - share.y), (share.y, 4.0 - share.x)];
+    let sides =
+        [(share.x, share.y), (1.0 - share.y, 1.0 + share.x), (1.0 - share.x, 3.0 - share.y), (share.y, 4.0 - share.x)];
     sides.into_iter().min_by(|a, b| a.0.abs().total_cmp(&b.0.abs())).map_or(0.0, |(_, along)| along)
 }
 

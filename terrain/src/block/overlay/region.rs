@@ -173,7 +173,8 @@ impl Region {
         holes.sort_by_key(|(_, corners)| std::cmp::Reverse(east(corners)));
         let whole: Vec<Loop> = outers.iter().map(|(_, corners)| corners.clone()).collect();
         for (depth, hole) in holes {
-            let around = outers.iter().zip(&whole).position(|((outer, _), whole)| outer + 1 == depth && holds(whole, &hole));
+            let around =
+                outers.iter().zip(&whole).position(|((outer, _), whole)| outer + 1 == depth && holds(whole, &hole));
             if let Some(at) = around {
                 bridge(&mut outers[at].1, hole);
             }
@@ -354,7 +355,8 @@ fn holds(corners: &[Corner], other: &[Corner]) -> bool {
         let (a, b) = (corners[at].at, corners[(at + 1) % corners.len()].at);
         if (2 * a.v > v) != (2 * b.v > v) {
             // East of the middle: all in whole numbers of half units.
-            let side = i128::from(v - 2 * a.v) * i128::from(b.u - a.u) - i128::from(u - 2 * a.u) * i128::from(b.v - a.v);
+            let side =
+                i128::from(v - 2 * a.v) * i128::from(b.u - a.u) - i128::from(u - 2 * a.u) * i128::from(b.v - a.v);
             inside ^= (side > 0) == (b.v > a.v);
         }
     }
@@ -375,8 +377,11 @@ fn bridge(outer: &mut Loop, mut hole: Loop) {
         let (before, after) = (outer[(end + len - 1) % len].at, outer[(end + 1) % len].at);
         let left_of_next = twice_area(to, after, from) >= 0;
         let left_of_last = twice_area(before, to, from) >= 0;
-        let inside =
-            if twice_area(before, to, after) >= 0 { left_of_next && left_of_last } else { left_of_next || left_of_last };
+        let inside = if twice_area(before, to, after) >= 0 {
+            left_of_next && left_of_last
+        } else {
+            left_of_next || left_of_last
+        };
         inside
             && (0..len).all(|at| {
                 let (a, b) = (outer[at].at, outer[(at + 1) % len].at);
@@ -399,7 +404,8 @@ fn clip_ears(mut corners: Loop, triangle: &mut dyn FnMut(Triangle)) {
         let order = (0..len).map(|away| (at + away) % len);
         let proper = order.clone().find(|middle| is_ear(&corners, *middle, false));
         // A corner on a straight edge; or, where rounding has crossed two edges, any.
-        let middle = proper.or_else(|| order.clone().find(|middle| is_ear(&corners, *middle, true))).unwrap_or(at % len);
+        let middle =
+            proper.or_else(|| order.clone().find(|middle| is_ear(&corners, *middle, true))).unwrap_or(at % len);
         let before = (middle + len - 1) % len;
         emit([corners[before], corners[middle], corners[(middle + 1) % len]], false, triangle);
         corners[before].edge = None;
