@@ -141,6 +141,8 @@ fn roads_have_their_nominal_width_along_the_slopes_of_andorra() {
             at(1.0)
         );
         assert!(off.len() > 30_000 && steepest > 1.2, "{} {steepest}", off.len());
-        assert!(within > 0.99, "{within}");
+        // Off are places where the ground turns within the width (a width follows the slope under its middle), and ends at a
+        // bend, which have the mean of both sides' widths.
+        assert!(within > 0.995 && at(1.0) < 0.2, "{within} {}", at(1.0));
     }
 }

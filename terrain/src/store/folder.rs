@@ -140,7 +140,8 @@ pub(super) fn may_be_replaced(path: &Path) -> Result<(), StoreError> {
     }
     for entry in fs::read_dir(path).map_err(|e| StoreError::io(path, e))? {
         let name = entry.map_err(|e| StoreError::io(path, e))?.file_name();
-        if !super::FILES.iter().any(|file| name == **file) && !(name == KEPT && path.join(KEPT).is_dir()) {
+        let known = super::FILES.iter().any(|file| name == **file) || (name == KEPT && path.join(KEPT).is_dir());
+        if !known {
             return Err(kept(format!("one with `{}` in it", name.to_string_lossy())));
         }
     }
