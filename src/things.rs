@@ -57,7 +57,7 @@ impl Things {
         let (frame, ground, format) = (renderer.frame_layout(), terrain.bindings().0, renderer.scene_format());
         let near_m = near_m.min(NEAR_RADIUS_M);
         let overlay = look.content.overlays.then(|| {
-            let settings = OverlaySettings { reach_m: near_m, wait: look.wait };
+            let settings = OverlaySettings { reach_m: near_m, detail: look.ground.detail, wait: look.wait };
             OverlayPass::new(gpu, frame, ground, format, landscape.clone(), settings)
         });
         let share = look.content.plants.min(1.0);
@@ -154,7 +154,8 @@ impl Things {
                 if let Some(canopy) = &self.canopy {
                     canopy.draw(view_index, terrain.bindings().1, pass);
                 }
-                terrain.draw(view_index, pass);
+                let draped = |block| self.overlay.as_ref().is_some_and(|overlay| overlay.has_water(block));
+                terrain.draw(view_index, &draped, pass);
                 if let Some(overlay) = &self.overlay {
                     overlay.draw(view_index, terrain, pass);
                 }

@@ -74,7 +74,7 @@ pub fn run(args: &VerifyArgs, output: Output) -> Result<(), Failure> {
             violations: far.violations,
         };
     }
-    if terrain::block::overlay::any(&landscape.features) {
+    if terrain::block::overlay::any(&landscape.features, &landscape.lakes) {
         let bar = Progress::new("what is draped on the ground");
         report.overlay = Some(overlay::look(&landscape, OVERLAY_BLOCKS, |share| bar.show(share)).into());
     }

@@ -309,6 +309,8 @@ fn what_is_draped_has_the_same_numbers_on_both_sides() {
     let source = shaders::joined("overlay.wgsl");
     let kinds = [
         ("WATER", Kind::Water),
+        ("WATER_AREA", Kind::WaterArea),
+        ("STILL_WATER", Kind::StillWater),
         ("PATH", Kind::Path),
         ("TRACK", Kind::Track),
         ("GRAVEL", Kind::Gravel),

@@ -185,7 +185,8 @@ impl Landscape {
         let shore_m = |x_m: f64, z_m: f64| water.signed_distance_m(DVec2::new(x_m, z_m));
         let dress =
             ground_map::Dress { cover: &self.cover, strips: self.strips.of(block), imagery: self.imagery.as_deref() };
-        let ground_map = ground_map::ground_map(field, block, &self.climate, &dress, &shore_m);
+        let sea_known = |x_m: f64, z_m: f64| water.knows_the_sea(DVec2::new(x_m, z_m));
+        let ground_map = ground_map::ground_map(field, block, &self.climate, &dress, &shore_m, &sea_known);
         Payload {
             block,
             version: self.ground.version(),
