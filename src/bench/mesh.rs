@@ -8,13 +8,13 @@ use super::statistics::{Against, Better, ROUNDS, WARM_UPS, alone, beside, interl
 use crate::failure::Failure;
 use crate::open_world;
 use crate::report::BenchResult;
-use crate::thread_time;
 use glam::{DVec2, DVec3};
 use std::hint::black_box;
 use terrain::block::mask::{Mask, block_posts};
 use terrain::block::{Landscape, Rings, light, mesh};
 use terrain::edit::{Changed, Crater, Edit};
 use terrain::store::World;
+use terrain::thread_time;
 use terrain::{BlockIndex, CELLS, Grid};
 
 /// How much is measured.
