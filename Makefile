@@ -1,7 +1,7 @@
 # Poligon on a fresh machine. `make help` says what there is.
 #
 #   ARGS="..."        more flags for the program, as in: make fly ARGS="--quality software"
-#   SUBJECT=frame     what `make bench` measures: ground, frame, scene, bake, mesh, flight, all
+#   SUBJECT=frame     what `make bench` measures: ground, frame, scene, plants, bake, mesh, flight, all
 #   SKIP_PACKAGES=1   install no system packages (they are there, or come from elsewhere)
 
 CARGO   ?= cargo

@@ -1,5 +1,5 @@
-// overlay.wgsl: what is draped on the near ground: roads, railways, running water, airfields and their paint.
-// Reads:  group 0 frame; group 1 the window: table of blocks, light maps. Vertex buffer: terrain::block::overlay::Vertex.
+// overlay.wgsl: what is draped on the near ground: water, roads, railways, airfields and their paint.
+// Reads:  group 0 frame; group 1 the window: table of blocks, light maps; water also ground maps and detail. Vertex buffer: terrain::block::overlay::Vertex.
 //         An instance is the slot of the block that the vertices belong to.
 // Writes: display colour blended over the ground; depth is tested and not written.
 // Host:   visual/src/passes/overlay.rs
@@ -13,6 +13,11 @@
 //!include "shared/display.wgsl"
 //!include "shared/posts.wgsl"
 //!include "shared/light.wgsl"
+//!include "shared/detail.wgsl"
+//!include "shared/water.wgsl"
+
+// As in terrain.wgsl.
+override DETAIL: u32 = 2u;
 
 const PLACE_BITS: u32 = 22u;
 const ACROSS_PER_METRE: f32 = 256.0;
@@ -20,20 +25,22 @@ const EXTENT_PER_METRE: f32 = 8.0;
 const UNITS: f32 = 65536.0;
 
 const WATER: u32 = 0u;
-const PATH: u32 = 1u;
-const TRACK: u32 = 2u;
-const GRAVEL: u32 = 3u;
-const LANE: u32 = 4u;
-const ROAD: u32 = 5u;
-const MOTORWAY: u32 = 6u;
-const RAILWAY: u32 = 7u;
-const APRON: u32 = 8u;
-const TAXIWAY: u32 = 9u;
-const RUNWAY_ASPHALT: u32 = 10u;
-const RUNWAY_CONCRETE: u32 = 11u;
-const RUNWAY_GRAVEL: u32 = 12u;
-const RUNWAY_GRASS: u32 = 13u;
-const WHITE: u32 = 14u;
+const WATER_AREA: u32 = 1u;
+const STILL_WATER: u32 = 2u;
+const PATH: u32 = 3u;
+const TRACK: u32 = 4u;
+const GRAVEL: u32 = 5u;
+const LANE: u32 = 6u;
+const ROAD: u32 = 7u;
+const MOTORWAY: u32 = 8u;
+const RAILWAY: u32 = 9u;
+const APRON: u32 = 10u;
+const TAXIWAY: u32 = 11u;
+const RUNWAY_ASPHALT: u32 = 12u;
+const RUNWAY_CONCRETE: u32 = 13u;
+const RUNWAY_GRAVEL: u32 = 14u;
+const RUNWAY_GRASS: u32 = 15u;
+const WHITE: u32 = 16u;
 
 // Depth of a large triangle near the eye is interpolated to some 1e-5 of the distance; a crest hides what lies 1.5 m
 // behind it at 10 km.
@@ -47,7 +54,7 @@ struct Draped {
     // Column and row in the block, in posts.
     @location(0) local: vec2<f32>,
     @location(1) haze: vec4<f32>,
-    // Along and across the feature, metres.
+    // Along and across the feature, metres; of WATER_AREA and STILL_WATER distances from two shores.
     @location(2) place_m: vec2<f32>,
     @location(3) relative_m: vec3<f32>,
     // Radiance of the sky mirrored in still water.
@@ -119,10 +126,8 @@ fn overlay_vertex(
     draped.relative_m = relative_m;
     draped.slot = vec2<f32>(f32(slot % u32(block.side)), f32(slot / u32(block.side)));
     draped.mirrored = vec3<f32>(0.0);
-    if draped.kind == WATER {
-        let direction = normalize(relative_m);
-        // Waves tilt the mirror, so even a grazing view sees sky a little above the horizon.
-        draped.mirrored = sky_radiance(normalize(vec3<f32>(direction.x, abs(direction.y) + 0.06, direction.z)));
+    if draped.kind <= STILL_WATER {
+        draped.mirrored = mirrored_sky(relative_m);
     }
     return draped;
 }
@@ -166,6 +171,7 @@ fn grain(place_m: vec2<f32>, size_m: f32, pixel_m: f32) -> f32 {
 const ASPHALT: vec3<f32> = vec3<f32>(0.095, 0.096, 0.10);
 const CONCRETE: vec3<f32> = vec3<f32>(0.25, 0.242, 0.225);
 const PAINT: vec3<f32> = vec3<f32>(0.68, 0.68, 0.66);
+const RIVER_BED: vec3<f32> = vec3<f32>(0.028, 0.045, 0.042);
 const YELLOW: vec3<f32> = vec3<f32>(0.55, 0.36, 0.04);
 
 fn road(kind: u32, at_m: vec2<f32>, half_m: f32, pixel_m: vec2<f32>) -> vec3<f32> {
@@ -309,6 +315,25 @@ fn water(draped: Draped, light: vec4<f32>, pixel_m: vec2<f32>) -> vec3<f32> {
     let fresnel = 0.02 + 0.62 * (out * out) * (out * out) * out;
     // The bed shows at the banks.
     let shallow = smoothstep(0.55, 1.0, abs(draped.place_m.y) / max(draped.half_m.x, 0.1));
-    let bed = mix(vec3<f32>(0.028, 0.045, 0.042), vec3<f32>(0.085, 0.085, 0.062), shallow);
+    let bed = mix(RIVER_BED, vec3<f32>(0.085, 0.085, 0.062), shallow);
     return lit(bed, light, vec2<f32>(0.0)) * (1.0 - fresnel) + draped.mirrored * fresnel;
+}
+
+// Water within its outlines: it ends at the outline, in a pixel.
+@fragment
+fn open_water_fragment(draped: Draped) -> @location(0) vec4<f32> {
+    let right = dpdx(draped.place_m);
+    let down = dpdy(draped.place_m);
+    let pixel_m = max(sqrt(right * right + down * down), vec2<f32>(1e-4));
+    let shores = clamp(draped.place_m / pixel_m, vec2<f32>(0.0), vec2<f32>(1.0));
+    let light = light_at(draped.local, draped.slot);
+    var ripple = vec2<f32>(0.5);
+    if DETAIL > 0u {
+        ripple = textureSample(detail_texture, detail_sampler, ripples_at(draped.local)).rg;
+    }
+    // Near the eye the map's finest level is in use.
+    let bed = water_bed(map_at(vec3<f32>(draped.local, 0.0), draped.slot));
+    let ground = lit(select(RIVER_BED, bed, draped.kind == STILL_WATER), light, vec2<f32>(0.0));
+    let colour = water_seen(ground, light, draped.relative_m, ripple, draped.mirrored);
+    return vec4<f32>(shown(colour, draped.haze, draped.clip.xy).rgb, shores.x * shores.y);
 }

@@ -12,16 +12,15 @@
 //!include "shared/posts.wgsl"
 //!include "shared/light.wgsl"
 //!include "shared/detail.wgsl"
-
-// Texels along a block's ground map.
-const MAP_SIDE: f32 = 64.0;
+//!include "shared/water.wgsl"
 
 // How many of the detail texture's two scales are read: 0, 1 or 2.
 override DETAIL: u32 = 2u;
 // 1: tint by level.
 override OVERLAY: u32 = 0u;
-
-@group(1) @binding(4) var ground_maps: texture_2d<f32>;
+// The map's alpha at the shore line; more where water within its outlines is draped on the block, which the map's, known
+// to a texel, must not stick out of.
+override SHORE: f32 = 0.5;
 
 struct Surface {
     @builtin(position) @invariant clip: vec4<f32>,
@@ -68,15 +67,8 @@ fn water_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) slot
     surface.slot = vec3<f32>(vec2<f32>(post.slot), post.level);
     surface.detail = detail_places(slot, post.local);
     surface.relative_m = post.relative_m;
-    let direction = normalize(post.relative_m);
-    // Waves tilt the mirror, so even a grazing view sees sky a little above the horizon.
-    surface.mirrored = sky_radiance(normalize(vec3<f32>(direction.x, abs(direction.y) + 0.06, direction.z)));
+    surface.mirrored = mirrored_sky(post.relative_m);
     return surface;
-}
-
-fn map_at(local: vec3<f32>, slot: vec2<f32>) -> vec4<f32> {
-    let texel = slot * MAP_SIDE + local.xy * ((MAP_SIDE - 1.0) / f32(TILE - 2u)) + 0.5;
-    return textureSampleLevel(ground_maps, map_sampler, texel * window.map_texel, local.z);
 }
 
 // Level 1 where a texel of level 0 spans less than about two pixels across, and so less than one up a slope.
@@ -102,37 +94,15 @@ fn water_fragment(surface: WaterSurface) -> @location(0) vec4<f32> {
     let light = light_at(surface.local.xy, surface.slot.xy);
     let map = map_at(surface.local, surface.slot.xy);
     // The shore line between texels, about as wide as a pixel.
-    let wet = smoothstep(0.49, 0.51, map.a);
-    let ripple_at = surface.local.xy * (60.0 / f32(TILE - 2u)) + vec2<f32>(frame.time_s * 0.004, frame.time_s * 0.0027);
+    let wet = smoothstep(SHORE - 0.01, SHORE + 0.01, map.a);
     // Without detail: no ripple, and ground as bright as its map.
     var near = vec4<f32>(0.5);
     if DETAIL > 0u {
-        near = textureSample(detail_texture, detail_sampler, mix(surface.detail.xy, ripple_at, wet));
+        near = textureSample(detail_texture, detail_sampler, mix(surface.detail.xy, ripples_at(surface.local.xy), wet));
     }
-    // Within a texel of the shore the map's colour is half the beach's: water has its own there, as the map's SHALLOW.
-    let open_water = smoothstep(0.5, 0.78, map.a);
-    let bed = mix(map.rgb * map.rgb, mix(vec3<f32>(0.030, 0.085, 0.090), map.rgb * map.rgb, open_water), wet);
+    let bed = mix(map.rgb * map.rgb, water_bed(map), wet);
     let ground = lit(bed * mix(0.6 + 0.8 * near.b, 1.0, wet), light, (near.rg - 0.5) * 0.3 * (1.0 - wet));
-
-    let distance_m = length(surface.relative_m);
-    let to_eye = surface.relative_m * (-1.0 / distance_m);
-    let tilt = (near.rg - 0.5) * 0.16;
-    let normal = normalize(vec3<f32>(tilt.x, 1.0, tilt.y));
-    let facing = clamp(dot(normal, to_eye), 0.0, 1.0);
-    // Schlick, water's 2 % face on; waves keep it from becoming a perfect mirror at the horizon.
-    let out = 1.0 - facing;
-    let fresnel = 0.02 + 0.62 * (out * out) * (out * out) * out;
-    // Sun glitter: the share of waves that have the slope which mirrors the sun to the eye, at a wind of 3 m/s.
-    // Source: C. Cox, W. Munk. Measurement of the roughness of the sea surface from photographs of the sun's glitter.
-    // 1954: mean square slope 0.003 + 0.00512 * wind.
-    let half_way = normalize(to_eye + frame.sun_direction);
-    let slope = half_way.xz / max(half_way.y, 0.05) - tilt;
-    let waves = exp(dot(slope, slope) * (-1.0 / 0.0184)) * (1.0 / (3.14159265 * 0.0184));
-    let steep = half_way.y * half_way.y;
-    let toward = 1.0 - max(dot(half_way, to_eye), 0.0);
-    let mirror = 0.02 + 0.98 * (toward * toward) * (toward * toward) * toward;
-    let glitter = mirror * waves / (4.0 * max(to_eye.y, 0.12) * max(steep * steep, 0.05)) * light.b * step(0.0, frame.sun_direction.y);
-    let water = ground * (1.0 - fresnel) + surface.mirrored * fresnel + frame.sun_irradiance * min(glitter, 3.0);
+    let water = water_seen(ground, light, surface.relative_m, near.rg, surface.mirrored);
     let colour = overlaid(mix(ground, water, wet), surface.slot.z);
     return shown(colour, surface.haze, surface.clip.xy);
 }

@@ -4,7 +4,9 @@
 //! quality preset or the world decides. Misuse is told by clap and ends with exit status 2.
 
 use crate::stage::cameras::Camera;
-use crate::values::{self, Extent, Look, MapPoint, Overlay, Place, Priced, Quality, Size, Subject, Without};
+use crate::values::{
+    self, CraterMark, Extent, Look, MapPoint, Overlay, Place, Priced, Quality, Size, Subject, Without,
+};
 use clap::{Args, Parser, Subcommand};
 use sim::UtcTime;
 use std::path::PathBuf;
@@ -331,6 +333,10 @@ pub struct ShotArgs {
     /// Draw the edges of the triangles.
     #[arg(long)]
     pub wireframe: bool,
+    /// A crater in the ground: degrees, metres to the crest of its rim, metres of depth [default: 0.32 of the radius]. May be
+    /// given several times.
+    #[arg(long = "crater", value_name = "LAT,LON,RADIUS_M[,DEPTH_M]", value_parser = values::crater, allow_hyphen_values = true)]
+    pub craters: Vec<CraterMark>,
     /// How the picture is made.
     #[command(flatten)]
     pub view: ViewArgs,
@@ -348,6 +354,10 @@ pub struct GalleryArgs {
     /// Folder for the pictures and contact-sheet.png.
     #[arg(long, value_name = "DIR", default_value = "poligon-gallery")]
     pub out: PathBuf,
+    /// A crater in the ground: degrees, metres to the crest of its rim, metres of depth [default: 0.32 of the radius]. May be
+    /// given several times.
+    #[arg(long = "crater", value_name = "LAT,LON,RADIUS_M[,DEPTH_M]", value_parser = values::crater, allow_hyphen_values = true)]
+    pub craters: Vec<CraterMark>,
     /// How the pictures are made.
     #[command(flatten)]
     pub view: ViewArgs,
@@ -359,6 +369,9 @@ pub struct BenchArgs {
     /// What to measure.
     #[arg(value_name = "SUBJECT", default_value = "all")]
     pub subject: Subject,
+    /// The world to measure over [default: the embedded one].
+    #[arg(long, value_name = "W")]
+    pub world: Option<PathBuf>,
 }
 
 /// `poligon trade`

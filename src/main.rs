@@ -4,12 +4,14 @@
 //! 2 misuse.
 #![forbid(unsafe_code)]
 
+mod ahead;
 mod args;
 mod bench;
 mod failure;
 mod flight;
 mod fog_base;
 mod gpu_proof;
+mod ground_edit;
 mod hud;
 mod models;
 mod open_world;
@@ -22,7 +24,6 @@ mod stage;
 mod sticks;
 mod still;
 mod things;
-mod thread_time;
 mod trade;
 mod values;
 mod verbs;

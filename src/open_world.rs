@@ -53,7 +53,7 @@ pub fn landscape(world: &World, rings: &Rings) -> Arc<Landscape> {
     Arc::new(Landscape {
         ground: Ground::new(world.field.clone()),
         lakes: Arc::new(world.lakes.clone()),
-        strips: StripsByBlock::new(world.field.grid(), &world.features),
+        strips: Arc::new(StripsByBlock::new(world.field.grid(), &world.features)),
         features: world.features.clone(),
         cover: world.cover.clone(),
         imagery: world.imagery.clone(),

@@ -13,8 +13,8 @@ use crate::values::{Overlay, Quality, Without};
 use glam::{DQuat, DVec2, DVec3};
 use sim::UtcTime;
 use std::sync::{Arc, Once};
-use terrain::block::Rings;
 use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
+use terrain::block::{Landscape, Rings};
 use terrain::features::index::ObjectIndex;
 use terrain::store::World;
 use terrain::{Area, Geodetic};
@@ -170,8 +170,10 @@ pub struct Scenery {
     pub gpu: Gpu,
     /// The world.
     pub world: Arc<World>,
-    /// Its ground.
+    /// Its ground, the newest version.
     pub area: Area,
+    /// What blocks and tiles are made from, the newest version.
+    pub landscape: Arc<Landscape>,
     /// What pictures look like.
     pub look: Look,
     /// The ground on the device.
@@ -214,7 +216,7 @@ impl Scenery {
         let standing = Arc::new(ObjectIndex::new(world.features.clone(), &area));
         let latitude_rad = world.projection.centre().lat_rad;
         let things = Things::new(&gpu, &renderer, &terrain, &landscape, &standing, latitude_rad, near_m, &look);
-        Self { gpu, world, area, look, terrain, things, standing, renderer }
+        Self { gpu, world, area, landscape, look, terrain, things, standing, renderer }
     }
 
     /// Visibility drawn: as asked, clamped to what the window guarantees, metres.
@@ -283,7 +285,7 @@ impl Scenery {
     /// Whether all that the eye's place asks for is there.
     pub fn is_settled(&self) -> bool {
         let window = self.terrain.window();
-        !window.is_jumping() && !window.is_relighting() && self.late() == 0
+        !window.is_jumping() && !window.is_relighting() && !window.is_changing() && self.late() == 0
     }
 
     /// Takes the shapes that a world's folder has of its own.

@@ -5,11 +5,12 @@
 
 use crate::failure::Failure;
 use crate::scenery::Look;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::path::Path;
 use std::sync::Arc;
 use terrain::block::Landscape;
 use terrain::block::rings::NEAR_RADIUS_M;
+use terrain::edit::Changed;
 use terrain::features::index::ObjectIndex;
 use vegetation::place::Nursery;
 use visual::camera::View;
@@ -38,6 +39,7 @@ pub struct Things {
     own_models: Vec<(Model, Mesh)>,
     particles: Particles,
     lights: Option<Lights>,
+    latitude_rad: f64,
 }
 
 impl Things {
@@ -55,7 +57,7 @@ impl Things {
         let (frame, ground, format) = (renderer.frame_layout(), terrain.bindings().0, renderer.scene_format());
         let near_m = near_m.min(NEAR_RADIUS_M);
         let overlay = look.content.overlays.then(|| {
-            let settings = OverlaySettings { reach_m: near_m, wait: look.wait };
+            let settings = OverlaySettings { reach_m: near_m, detail: look.ground.detail, wait: look.wait };
             OverlayPass::new(gpu, frame, ground, format, landscape.clone(), settings)
         });
         let share = look.content.plants.min(1.0);
@@ -79,7 +81,36 @@ impl Things {
         });
         let overlay = overlay.flatten();
         let lights = lights.flatten();
-        Self { overlay, plants, canopy, objects, own_models: Vec::new(), particles, lights }
+        Self { overlay, plants, canopy, objects, own_models: Vec::new(), particles, lights, latitude_rad }
+    }
+
+    /// Takes over a new version of the ground: what stands where it changed is placed anew. `moved` are the middles in plan of
+    /// the things that `standing` has at other heights.
+    pub fn set_landscape(
+        &mut self,
+        landscape: &Arc<Landscape>,
+        standing: &Arc<ObjectIndex>,
+        moved: &[DVec2],
+        changed: &Changed,
+    ) {
+        if let Some(overlay) = &mut self.overlay {
+            overlay.set_landscape(landscape.clone(), changed);
+        }
+        if self.plants.is_some() || self.canopy.is_some() {
+            let nursery = Arc::new(Nursery::new(landscape.clone(), self.latitude_rad));
+            if let Some(plants) = &mut self.plants {
+                plants.set_nursery(&nursery, changed);
+            }
+            if let Some(canopy) = &mut self.canopy {
+                canopy.set_nursery(&nursery, changed);
+            }
+        }
+        if let Some(objects) = &mut self.objects {
+            objects.set_index(standing.clone(), moved);
+        }
+        if let Some(lights) = &mut self.lights {
+            lights.set_area(&landscape.ground.whole(), changed);
+        }
     }
 
     /// Streams around the eye and culls for a view. The terrain must have followed already.
@@ -126,7 +157,8 @@ impl Things {
                 if let Some(canopy) = &self.canopy {
                     canopy.draw(view_index, terrain.bindings().1, pass);
                 }
-                terrain.draw(view_index, pass);
+                let draped = |block| self.overlay.as_ref().is_some_and(|overlay| overlay.has_water(block));
+                terrain.draw(view_index, &draped, pass);
                 if let Some(overlay) = &self.overlay {
                     overlay.draw(view_index, terrain, pass);
                 }

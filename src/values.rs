@@ -120,6 +120,8 @@ pub enum Subject {
     Flight,
     /// What each thing on the ground costs.
     Scene,
+    /// Placing plants.
+    Plants,
     /// All of them.
     All,
 }
@@ -198,6 +200,39 @@ pub fn place(text: &str) -> Result<Place, Refused> {
     let altitude_m = number(alt, "an altitude in metres", -12_000.0..=1_000_000.0)?;
     let altitude = if above_ground { Altitude::GroundM(altitude_m) } else { Altitude::SeaLevelM(altitude_m) };
     Ok(Place { lat_deg: latitude(lat)?, lon_deg: longitude(lon)?, altitude })
+}
+
+/// A crater as a person names it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CraterMark {
+    /// Latitude, degrees.
+    pub lat_deg: f64,
+    /// Longitude, degrees.
+    pub lon_deg: f64,
+    /// Radius, metres.
+    pub radius_m: f64,
+    /// Depth, metres; that of its radius where none is given.
+    pub depth_m: Option<f64>,
+}
+
+/// `LAT,LON,RADIUS_M` or `LAT,LON,RADIUS_M,DEPTH_M`.
+///
+/// # Errors
+/// [`Refused`] names the part that is wrong.
+pub fn crater(text: &str) -> Result<CraterMark, Refused> {
+    let expected = "LAT,LON,RADIUS_M or LAT,LON,RADIUS_M,DEPTH_M in degrees and metres";
+    let ([lat, lon, radius], depth) = match text.matches(',').count() {
+        3 => pieces(text, ',', expected).map(|[lat, lon, radius, depth]| ([lat, lon, radius], Some(depth)))?,
+        _ => (pieces(text, ',', expected)?, None),
+    };
+    Ok(CraterMark {
+        lat_deg: latitude(lat)?,
+        lon_deg: longitude(lon)?,
+        radius_m: number(radius, "a radius in metres", 1.0..=terrain::edit::MOST_RADIUS_M)?,
+        depth_m: depth
+            .map(|depth| number(depth, "a depth in metres", 0.1..=terrain::edit::MOST_DEPTH_M))
+            .transpose()?,
+    })
 }
 
 /// `LAT,LON`.

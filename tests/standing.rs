@@ -46,7 +46,12 @@ fn landscape(world: &World) -> Arc<Landscape> {
     let rings = Rings::new(world.field.grid(), 24, 1.0);
     let climate = Climate::of(world.projection.centre(), world.info.statistics.mean_m);
     let bare = Landscape::bare(world.field.clone(), rings.limits_m, climate);
-    Arc::new(Landscape { features: world.features.clone(), cover: world.cover.clone(), ..bare })
+    Arc::new(Landscape {
+        features: world.features.clone(),
+        lakes: Arc::new(world.lakes.clone()),
+        cover: world.cover.clone(),
+        ..bare
+    })
 }
 
 #[test]

@@ -54,6 +54,8 @@ pub struct Snapshot {
     pub aircraft_id: StableId,
     /// The own aircraft.
     pub aircraft: AircraftState,
+    /// Version of the ground that the last step met ([`crate::SceneGround::version`]). Not part of the hash.
+    pub ground_version: u32,
     /// Height of the aircraft above the ground, metres; `None` where there is no ground.
     pub height_above_ground_m: Option<f64>,
     /// What the pilot commands.

@@ -16,6 +16,7 @@ use sim::scene::{
 use sim::snapshot::StableId;
 use sim::{Condition, Snapshot, lockstep};
 use std::sync::Arc;
+use terrain::edit::{Crater, Edit};
 
 /// Runs a scene and keeps all events.
 fn run(scene: &mut Scene, ground: &SceneGround, steps: u32) -> (Arc<Snapshot>, Vec<Event>) {
@@ -306,4 +307,38 @@ fn the_thread_flies_entities_and_takes_orders() {
     let scene = thread.stop().unwrap();
     // That of the start, or that of the scheduled command if the thread has come so far.
     assert!([1.5, 4.0].contains(&scene.surroundings().turbulence_mps), "what is refused changes nothing");
+}
+
+#[test]
+fn an_edited_ground_is_met_from_the_step_that_names_it() {
+    let before = mountains();
+    let craters: Vec<Edit> = (0..361)
+        .map(|at| DVec2::new(f64::from(at % 19 - 9), f64::from(at / 19 - 9)) * 600.0)
+        .map(|centre_m| Edit::Crater(Crater { centre_m, radius_m: 300.0, depth_m: 150.0 }))
+        .collect();
+    let after = before.edited(&craters).unwrap();
+    assert_eq!((before.version(), after.version()), (0, 1));
+    // What an edit cannot be leaves no trace.
+    let wrong = Edit::Crater(Crater { centre_m: DVec2::NAN, radius_m: 1.0, depth_m: 1.0 });
+    assert!(before.edited(&[wrong]).is_err());
+    let flown = |ground: &SceneGround| {
+        let mut scene = busy();
+        let (half, early) = run(&mut scene, &before, 360);
+        assert_eq!(half.ground_version, 0);
+        let (last, late) = run(&mut scene, ground, 960);
+        assert_eq!(last.ground_version, ground.version());
+        (scene.hash(), impacts(&early), impacts(&late))
+    };
+    let (unedited, edited) = (flown(&before), flown(&after));
+    assert_eq!(unedited.1, edited.1);
+    assert!(unedited.2 != edited.2, "no shell met a crater");
+    // Every one that met the ground met that of its step.
+    let on = |ground: &SceneGround, strikes: &[Strike]| {
+        let grounded: Vec<&Strike> = strikes.iter().filter(|s| s.target.is_none() && s.object.is_none()).collect();
+        assert!(grounded.len() > 3, "{}", grounded.len());
+        grounded
+            .iter()
+            .all(|s| ground.height_m(s.point_m.x, s.point_m.z).is_some_and(|h| (h - s.point_m.y).abs() < 1e-6))
+    };
+    assert!(on(&before, &edited.1) && on(&after, &edited.2) && !on(&before, &edited.2));
 }

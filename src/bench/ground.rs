@@ -53,7 +53,7 @@ struct Segment {
 pub fn bench(field: &Arc<Field>, load: Load) -> Result<Vec<BenchResult>, Failure> {
     let area = Ground::new(field.clone()).whole();
     let grid = *field.grid();
-    let engine = sim::ground_contact::height_field(field.heights_m(), grid.columns(), grid.rows(), grid.step_m)
+    let engine = sim::ground_contact::height_field(&field.heights_m(), grid.columns(), grid.rows(), grid.step_m)
         .map_err(|error| Failure::while_doing("making the yardstick's height field", error))?;
     let mut results = heights(&area, &engine, load)?;
     results.extend(segments(&area, &engine, load)?);
@@ -62,6 +62,7 @@ pub fn bench(field: &Arc<Field>, load: Load) -> Result<Vec<BenchResult>, Failure
 
 fn heights(area: &Area, engine: &HeightField, load: Load) -> Result<Vec<BenchResult>, Failure> {
     let (grid, posts) = (*area.grid(), area.field().heights_m());
+    let posts = &*posts;
     let mut random = StdRng::seed_from_u64(SEED);
     let points: Vec<DVec2> = (0..load.points)
         .map(|_| {
@@ -274,14 +275,14 @@ mod tests {
         let field = Arc::new(synthetic::ridges(grid, 5));
         let area = Ground::new(field.clone()).whole();
         let engine =
-            sim::ground_contact::height_field(field.heights_m(), grid.columns(), grid.rows(), grid.step_m).unwrap();
+            sim::ground_contact::height_field(&field.heights_m(), grid.columns(), grid.rows(), grid.step_m).unwrap();
         let mut random = StdRng::seed_from_u64(SEED);
         for _ in 0..500 {
             let x_m = random.random_range(grid.west_m..grid.east_m());
             let at = DVec2::new(x_m, random.random_range(grid.north_m..grid.south_m()));
             let ours = area.height_m(at.x, at.y).unwrap();
             // Heights to 6 km in f64: a few roundings of 1e-12; the engine scales by the world's extent, some more.
-            assert!((plain_height_m(field.heights_m(), &grid, at).unwrap() - ours).abs() < 1e-9);
+            assert!((plain_height_m(&field.heights_m(), &grid, at).unwrap() - ours).abs() < 1e-9);
             assert!((engine_height_m(&engine, &grid, at, 10_000.0).unwrap() - ours).abs() < 1e-6);
         }
         let mut same = 0;

@@ -1,6 +1,6 @@
 //! Building blocks: index lists, masks, payloads; microseconds a block on one core.
 //!
-//! Measured over the same sample of blocks spread over the world. Yardstick of an index list: copying the list of
+//! Processor time of the one thread that does it, over the same sample of blocks spread over the world. Yardstick of an index list: copying the list of
 //! level 0, what a renderer without levels would do at most.
 
 use super::OWN;
@@ -8,13 +8,14 @@ use super::statistics::{Against, Better, ROUNDS, WARM_UPS, alone, beside, interl
 use crate::failure::Failure;
 use crate::open_world;
 use crate::report::BenchResult;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::hint::black_box;
-use std::time::Instant;
-use terrain::BlockIndex;
 use terrain::block::mask::{Mask, block_posts};
-use terrain::block::{Rings, light, mesh};
+use terrain::block::{Landscape, Rings, light, mesh};
+use terrain::edit::{Changed, Crater, Edit};
 use terrain::store::World;
+use terrain::thread_time;
+use terrain::{BlockIndex, CELLS, Grid};
 
 /// How much is measured.
 #[derive(Debug, Clone, Copy)]
@@ -48,6 +49,8 @@ pub fn bench(world: &World, load: Load) -> Result<Vec<BenchResult>, Failure> {
     let count = blocks.len();
     let pyramid = landscape.ground.pyramid();
     let (whole, none) = (Mask::all(), Mask::NONE);
+    let low_sun = terrain::frame::direction(2.0, 5f64.to_radians());
+    let craters: Vec<Edit> = blocks.iter().map(|&block| crater(field.grid(), block)).collect();
     // Lists take a microsecond or ten: many times, so that the clock's own step does not show.
     let lists = 16 * count;
     let values = interleave::<Failure>(
@@ -61,13 +64,21 @@ pub fn bench(world: &World, load: Load) -> Result<Vec<BenchResult>, Failure> {
             &mut || Ok(each_us(count, |at| rings.limits_m.map(|limit_m| Mask::for_limit(&posts[at], limit_m)))),
             &mut || Ok(each_us(count, |at| landscape.payload(blocks[at], to_sun))),
             &mut || Ok(each_us(count, |at| light::light_map(field, pyramid, blocks[at], to_sun))),
+            &mut || Ok(each_us(count, |at| light::light_map(field, pyramid, blocks[at], low_sun))),
+            &mut || Ok(each_us(count, |at| landscape.edited(std::slice::from_ref(&craters[at])))),
+            &mut || Ok(each_us(1, |_| field.heights_m().to_vec())),
+            &mut || Ok(each_us(count, |at| whole_edit(&landscape, &craters[at], to_sun))),
         ],
     )?;
-    let [level_0, level_1, mixed, copy, mask, payload, light] = values.as_slice() else { return Ok(Vec::new()) };
+    let [level_0, level_1, mixed, copy, mask, payload, light, low, edit, posts_copy, whole] = values.as_slice() else {
+        return Ok(Vec::new());
+    };
     let fine: u32 = masks.iter().map(Mask::fine).sum();
     let sub_blocks = (terrain::block::mask::SUBS * terrain::block::mask::SUBS) as f64;
     let share = 100.0 * f64::from(fine) / (count as f64 * sub_blocks);
     let copied = Against { name: "copy of the level-0 list", version: OWN, values: copy };
+    let all_posts = Against { name: "copy of all posts", version: OWN, values: posts_copy };
+    let reached = craters.iter().map(|edit| whole_edit(&landscape, edit, to_sun)).sum::<usize>() as f64 / count as f64;
     let (less, us) = (Better::Less, "us a block");
     // The rest of a payload is heights, box and ground map; copies of posts are microseconds.
     let rest: Vec<f64> = payload.iter().zip(light).map(|(payload, light)| payload - light).collect();
@@ -78,17 +89,37 @@ pub fn bench(world: &World, load: Load) -> Result<Vec<BenchResult>, Failure> {
         alone("masks of three rings", us, mask, format!("{count} blocks")),
         alone("payload", us, payload, format!("{count} blocks")),
         alone("payload, light map", us, light, "normals and shadows"),
+        alone("payload, light map, sun at 5 degrees", us, low, "longer shadows to look for"),
         alone("payload, ground map and heights", us, &rest, "payload less light map"),
+        beside("crater: posts, pyramid, masks", "us an edit", less, edit, all_posts, "radius of three steps"),
+        alone("crater: all that it reaches", "us an edit", whole, format!("{reached:.1} blocks an edit; no shadows")),
     ])
+}
+
+/// A crater of three steps in a block.
+fn crater(grid: &Grid, block: BlockIndex) -> Edit {
+    let at = |first: i64| first + i64::from(CELLS) / 3;
+    let centre_m = DVec2::new(grid.x_m(at(block.first_column())), grid.z_m(at(block.first_row())));
+    Edit::Crater(Crater::simple(centre_m, 3.0 * grid.step_m))
+}
+
+/// Makes an edit and every payload and near mesh that it reaches by more than a shadow; says how many blocks.
+fn whole_edit(landscape: &Landscape, edit: &Edit, to_sun: DVec3) -> usize {
+    let Ok((landscape, changed)) = landscape.edited(std::slice::from_ref(edit)) else { return 0 };
+    let blocks = changed.blocks(landscape.ground.field().grid(), Changed::reaches_payload);
+    for block in &blocks {
+        black_box((landscape.payload(*block, to_sun), landscape.mesh(*block, 1)));
+    }
+    blocks.len()
 }
 
 /// Microseconds for each of so many pieces of work.
 fn each_us<T>(count: usize, mut work: impl FnMut(usize) -> T) -> f64 {
-    let start = Instant::now();
+    let start = thread_time::spent();
     for at in 0..count {
         black_box(work(at));
     }
-    start.elapsed().as_secs_f64() * 1e6 / count as f64
+    (thread_time::spent() - start).as_secs_f64() * 1e6 / count as f64
 }
 
 #[cfg(test)]
@@ -99,7 +130,7 @@ mod tests {
     fn every_part_of_a_block_is_measured() {
         let world = crate::bench::tests::tiny_world();
         let results = bench(&world, Load { blocks: 3, rounds: 2 }).unwrap();
-        assert_eq!(results.len(), 7);
+        assert_eq!(results.len(), 10);
         assert!(results.iter().all(|result| result.rounds == 2 && result.ours.is_finite()), "{results:?}");
     }
 }

@@ -9,6 +9,7 @@ pub mod flight;
 pub mod frame;
 pub mod ground;
 pub mod mesh;
+pub mod plants;
 pub mod scene;
 pub mod statistics;
 

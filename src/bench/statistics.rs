@@ -96,15 +96,12 @@ pub fn beside(
 
 /// The median, the mean of the middle two for an even number; NaN of nothing.
 pub fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    share(&sorted, 0.5)
+    share(&sorted(values), 0.5)
 }
 
 /// First and third quartile, interpolated; `None` of nothing.
 pub fn quartiles(values: &[f64]) -> Option<[f64; 2]> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
+    let sorted = sorted(values);
     (!sorted.is_empty()).then(|| [share(&sorted, 0.25), share(&sorted, 0.75)])
 }
 
@@ -133,8 +130,15 @@ fn ratio(better: Better, ours: f64, theirs: f64) -> f64 {
     }
 }
 
+/// Values from the least to the greatest.
+pub fn sorted(values: &[f64]) -> Vec<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted
+}
+
 /// The value at a share (0..=1) of sorted ones, interpolated linearly between neighbours; NaN of nothing.
-fn share(sorted: &[f64], share: f64) -> f64 {
+pub fn share(sorted: &[f64], share: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let place = share * last as f64;
     let low = (place as usize).min(last);

@@ -7,11 +7,11 @@ use crate::report::{
 };
 use crate::scenery::{Heavens, Scenery};
 use crate::stage::{self, effects::Effects};
-use crate::thread_time;
 use glam::DVec3;
 use sim::Snapshot;
 use std::time::{Duration, Instant};
 use terrain::BlockIndex;
+use terrain::thread_time;
 use visual::camera::View;
 
 /// Start and prime of the 64-bit FNV-1a hash (G. Fowler, L. Noll, P. Vo, 1991).
@@ -240,7 +240,7 @@ impl Record {
                     total: window.counters().upload_bytes_total,
                 },
                 memory_bytes: MemoryBytes {
-                    posts: size_of_val(world.field.heights_m()) as u64,
+                    posts: world.field.bytes() as u64,
                     pyramid: landscape.ground.pyramid().bytes() as u64,
                     payload_cpu: (landscape.masks.bytes() + window.waiting_bytes()) as u64,
                     payload_gpu: scenery.terrain.gpu_bytes() as u64,

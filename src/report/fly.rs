@@ -178,7 +178,7 @@ pub struct Plants {
     pub drawn: u64,
     /// Stems that the closed forest in sight stands for.
     pub canopy_stands_for: u64,
-    /// Longest wall time to place a tile's plants; on a busy machine it includes waiting for a processor.
+    /// Longest that a tile's plants took to place, of the placing thread's own time.
     pub placed_ms_max: f64,
 }
 

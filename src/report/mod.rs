@@ -33,7 +33,7 @@ pub use simulate::{Simulated, Stiffness, TrimFound};
 pub use trade::{Knob, KnobPoint, Trade};
 pub use trajectory::TrajectoryReport;
 pub use verify::{EdgesChecked, Far, Gpu, Near, Verify};
-pub use world::{Cover, Extent, FeatureCount, Lake, Source, Voids, WorldReport};
+pub use world::{Cover, Extent, FeatureCount, Imagery, Lake, Source, Voids, WorldReport};
 
 /// A 64-bit hash as it is reported.
 pub fn hash(value: u64) -> String {

@@ -30,6 +30,8 @@ pub struct WorldReport {
     pub lakes: Vec<Lake>,
     /// What covers the ground; null where nothing is known.
     pub cover: Option<Cover>,
+    /// Photographs of the ground.
+    pub imagery: Vec<Imagery>,
 }
 
 /// Where a world lies: its centre on the Earth, its edges in its own plane.
@@ -85,6 +87,23 @@ pub struct Source {
     pub void_samples: u64,
     /// What must be known about its accuracy; empty if nothing.
     pub note: String,
+}
+
+/// A photograph that a world was made with.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Imagery {
+    /// The file's name.
+    pub name: String,
+    /// Its format.
+    pub format: String,
+    /// Whom to thank, and the licence.
+    pub credit: String,
+    /// Its coordinate system.
+    pub system: String,
+    /// Pixels along a row, and rows.
+    pub size_px: [u64; 2],
+    /// Size of a pixel on the ground, along rows and columns.
+    pub pixel_m: [f64; 2],
 }
 
 /// Features of one kind.

@@ -179,7 +179,7 @@ impl Setting<'_> {
                 setting: step_m,
                 error: errors_m.rms(),
                 error_max: Some(errors_m.largest),
-                bytes: Some(size_of_val(world.field.heights_m()) as u64),
+                bytes: Some(world.field.bytes() as u64),
                 bake_s: Some(bake_s),
                 ..KnobPoint::default()
             });

@@ -1,7 +1,7 @@
 //! `poligon bench`: speed beside a yardstick in the same run.
 
 use crate::args::BenchArgs;
-use crate::bench::{bake, flight, frame, ground, mesh, scene};
+use crate::bench::{bake, flight, frame, ground, mesh, plants, scene};
 use crate::failure::Failure;
 use crate::open_world;
 use crate::output::{self, Output};
@@ -20,7 +20,7 @@ const BAKES: u32 = 7;
 /// [`Failure`] says what was expected and what was found.
 pub fn run(args: &BenchArgs, output: Output) -> Result<(), Failure> {
     let wanted = |subject| args.subject == subject || args.subject == Subject::All;
-    let world = Arc::new(open_world::open(None)?);
+    let world = Arc::new(open_world::open(args.world.as_deref())?);
     let mut report = report::Bench::default();
     if wanted(Subject::Ground) {
         tell_subject("ground queries");
@@ -35,6 +35,10 @@ pub fn run(args: &BenchArgs, output: Output) -> Result<(), Failure> {
     if wanted(Subject::Mesh) {
         tell_subject("building blocks");
         report.results.extend(mesh::bench(&world, mesh::Load::FULL)?);
+    }
+    if wanted(Subject::Plants) {
+        tell_subject("placing plants");
+        report.results.extend(plants::bench(&world, plants::Load::FULL)?);
     }
     if wanted(Subject::Frame) {
         tell_subject("frames");

@@ -1,5 +1,6 @@
 //! `poligon fly`: the main job. A window where there is a display, else headless with pictures.
 
+use crate::ahead;
 use crate::args::FlyArgs;
 use crate::failure::Failure;
 use crate::flight;
@@ -51,7 +52,9 @@ pub fn run(args: &FlyArgs, to: Output, started: Instant) -> Result<(), Failure> 
     if mode != Mode::Window {
         output::tell(format_args!("no window: pictures go to {}", args.shots.display()));
     }
+    ahead::begin_ground();
     let world = Arc::new(open_world::open(args.world.as_deref())?);
+    ahead::begin_plants(&world, &args.view);
     let report = match mode {
         Mode::Window => flight::window::fly(args, world, started)?,
         Mode::Lockstep => flight::headless::fly(args, world, started)?,

@@ -33,6 +33,7 @@ pub fn run(args: &GalleryArgs, output: Output) -> Result<(), Failure> {
     let look = Look::of(&args.view, gpu.report.kind, true);
     let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), look);
     scenery.use_models_of(args.world.as_deref())?;
+    scenery.make_craters(&args.craters)?;
     // Every entry is placed before the first picture is drawn.
     let places = views.places(&world, &scenery.area)?;
     let target = Offscreen::new(&scenery.gpu, look.size_px).map_err(failed)?;

@@ -77,6 +77,18 @@ pub fn describe(info: &WorldInfo) -> WorldReport {
             shares: cover.shares.clone(),
             from_features: cover.from_features,
         }),
+        imagery: info
+            .imagery
+            .iter()
+            .map(|photo| report::Imagery {
+                name: photo.file.clone(),
+                format: photo.format.clone(),
+                credit: photo.credit.clone(),
+                system: photo.system.clone(),
+                size_px: [photo.columns as u64, photo.rows as u64],
+                pixel_m: photo.pixel_m,
+            })
+            .collect(),
         lakes: info
             .lakes
             .iter()

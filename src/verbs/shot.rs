@@ -23,6 +23,7 @@ pub fn run(args: &ShotArgs, output: Output) -> Result<(), Failure> {
     look.ground.wireframe = args.wireframe;
     let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), look);
     scenery.use_models_of(args.world.as_deref())?;
+    scenery.make_craters(&args.craters)?;
     let eye_m = scenery::position(&world, &scenery.area, args.eye)?;
     let at = Standpoint {
         eye_m,

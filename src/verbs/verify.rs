@@ -74,7 +74,7 @@ pub fn run(args: &VerifyArgs, output: Output) -> Result<(), Failure> {
             violations: far.violations,
         };
     }
-    if terrain::block::overlay::any(&landscape.features) {
+    if terrain::block::overlay::any(&landscape.features, &landscape.lakes) {
         let bar = Progress::new("what is draped on the ground");
         report.overlay = Some(overlay::look(&landscape, OVERLAY_BLOCKS, |share| bar.show(share)).into());
     }
@@ -318,7 +318,8 @@ fn lay_out(flight: &Flight, eye_m: DVec3, report: &mut report::Verify) {
 fn highest(landscape: &Landscape) -> Option<DVec2> {
     let field = landscape.ground.field();
     let grid = field.grid();
-    let heights = field.heights_m().iter().enumerate().filter(|(_, h)| !h.is_nan());
+    let heights = field.heights_m();
+    let heights = heights.iter().enumerate().filter(|(_, h)| !h.is_nan());
     let (at, _) = heights.max_by(|a, b| a.1.total_cmp(b.1))?;
     let columns = grid.columns() as usize;
     Some(DVec2::new(grid.x_m((at % columns) as i64), grid.z_m((at / columns) as i64)))

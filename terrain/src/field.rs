@@ -5,9 +5,14 @@
 //!
 //! A post without data is *void* and stored as NaN; a triangle with a void corner is void too: nothing is there.
 //! Invariant: a post is finite or NaN, never infinite, and |height| <= [`MAX_HEIGHT_M`].
+//!
+//! A field never changes; an event makes a new version of it ([`Field::edited`]) that shares what did not change.
 
+use crate::edit::{Changed, Edit, EditError};
 use crate::grid::{Grid, PostRect};
+use crate::paged::Paged;
 use glam::{DVec2, DVec3};
+use std::borrow::Cow;
 use std::fmt;
 
 /// Largest height taken: more than any place on Earth with a 10,000 m test step on top.
@@ -17,11 +22,12 @@ pub const MAX_HEIGHT_M: f32 = 100_000.0;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
     grid: Grid,
-    heights_m: Vec<f32>,
+    heights_m: Paged<f32>,
+    version: u32,
 }
 
 /// A post's place: column and row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Corner {
     /// Column.
     pub column: u32,
@@ -85,7 +91,32 @@ impl Field {
             let (column, row) = ((at % columns) as u32, (at / columns) as u32);
             return Err(FieldError::Height { column, row, height_m: heights_m[at] });
         }
-        Ok(Self { grid, heights_m })
+        Ok(Self { grid, heights_m: Paged::new(heights_m), version: 0 })
+    }
+
+    /// The next version of the field: the edits made, one after the other, and what they changed. Cost: a copy of the
+    /// pages changed and of a table of a thousandth of the field.
+    ///
+    /// # Errors
+    /// [`EditError`] says which edit cannot be made; none is then.
+    pub fn edited(&self, edits: &[Edit]) -> Result<(Self, Changed), EditError> {
+        let posts = crate::edit::posts(self, edits)?;
+        let changed = Changed::new(self, &posts);
+        let columns = self.grid.columns() as usize;
+        let changes =
+            posts.iter().map(|(corner, height_m)| (corner.row as usize * columns + corner.column as usize, *height_m));
+        let heights_m = self.heights_m.with(changes);
+        Ok((Self { grid: self.grid, heights_m, version: self.version + 1 }, changed))
+    }
+
+    /// Counts the edits that made it, from 0.
+    pub fn version(&self) -> u32 {
+        self.version
+    }
+
+    /// Size of the posts in bytes.
+    pub fn bytes(&self) -> usize {
+        self.heights_m.bytes()
     }
 
     /// Where the posts lie.
@@ -93,15 +124,27 @@ impl Field {
         &self.grid
     }
 
-    /// All heights row by row; NaN is void.
-    pub fn heights_m(&self) -> &[f32] {
-        &self.heights_m
+    /// All heights row by row; NaN is void. A copy if the field was edited.
+    pub fn heights_m(&self) -> Cow<'_, [f32]> {
+        self.heights_m.all()
+    }
+
+    /// Heights of a cell's posts: north-west, north-east, south-west, south-east. The cell must be one of the grid's.
+    #[inline(always)]
+    pub(crate) fn cell_m(&self, column: usize, row: usize) -> [f32; 4] {
+        let wide = self.grid.columns() as usize;
+        let at = row * wide + column;
+        let places = [at, at + 1, at + wide, at + wide + 1];
+        match self.heights_m.whole() {
+            Some(heights) => places.map(|at| heights[at]),
+            None => places.map(|at| self.heights_m.get(at)),
+        }
     }
 
     /// Height of a post in metres; NaN if void or outside the grid.
     pub fn post_m(&self, column: i64, row: i64) -> f32 {
         if (0..i64::from(self.grid.columns())).contains(&column) && (0..i64::from(self.grid.rows())).contains(&row) {
-            self.heights_m[row as usize * self.grid.columns() as usize + column as usize]
+            self.heights_m.get(row as usize * self.grid.columns() as usize + column as usize)
         } else {
             f32::NAN
         }
@@ -117,17 +160,26 @@ impl Field {
     pub fn read(&self, rect: PostRect) -> Vec<f32> {
         let wide = rect.columns as usize;
         let mut heights = vec![f32::NAN; wide * rect.rows as usize];
-        let columns = i64::from(self.grid.columns());
-        let first = rect.column.clamp(0, columns);
-        let last = (rect.column + i64::from(rect.columns)).clamp(first, columns);
         for (row, line) in (rect.row..).zip(heights.chunks_exact_mut(wide.max(1))) {
-            if (0..i64::from(self.grid.rows())).contains(&row) && first < last {
-                let from = (row * columns + first) as usize;
-                let length = (last - first) as usize;
-                line[(first - rect.column) as usize..][..length].copy_from_slice(&self.heights_m[from..from + length]);
-            }
+            self.read_row(rect.column, row, line);
         }
         heights
+    }
+
+    /// Heights along a row from a column on; NaN outside the grid.
+    #[inline]
+    pub(crate) fn read_row(&self, column: i64, row: i64, into: &mut [f32]) {
+        let columns = i64::from(self.grid.columns());
+        let inside = (0..i64::from(self.grid.rows())).contains(&row);
+        let first = column.clamp(0, columns);
+        let last = (column + into.len() as i64).clamp(first, columns);
+        if !inside || first == last {
+            return into.fill(f32::NAN);
+        }
+        let (before, length) = ((first - column) as usize, (last - first) as usize);
+        into[..before].fill(f32::NAN);
+        into[before + length..].fill(f32::NAN);
+        self.heights_m.read((row * columns + first) as usize, &mut into[before..before + length]);
     }
 
     /// The two triangles of a cell, the north-western one first; a void one is `None`.

@@ -7,6 +7,7 @@
 //! taken at the entry and at the exit; the exit of one is the entry of the next at the very same parameter, so no
 //! rounding of a cell line, a diagonal or a post can let a segment through.
 
+use crate::edit::{Changed, Edit, EditError};
 use crate::field::Field;
 use crate::grid::Grid;
 use crate::pyramid::{self, Pyramid};
@@ -70,6 +71,21 @@ impl Ground {
     pub fn new(field: Arc<Field>) -> Self {
         let pyramid = Arc::new(Pyramid::new(&field));
         Self { field, pyramid }
+    }
+
+    /// The next version of the ground ([`Field::edited`]) and what it changed.
+    ///
+    /// # Errors
+    /// [`EditError`] says which edit cannot be made; none is then.
+    pub fn edited(&self, edits: &[Edit]) -> Result<(Self, Changed), EditError> {
+        let (field, changed) = self.field.edited(edits)?;
+        let pyramid = Arc::new(self.pyramid.edited(&field, &changed));
+        Ok((Self { field: Arc::new(field), pyramid }, changed))
+    }
+
+    /// Counts the edits that made it, from 0.
+    pub fn version(&self) -> u32 {
+        self.field.version()
     }
 
     /// The part of the ground over the plan rectangle (x, z) from `low` to `high`, metres.
@@ -184,6 +200,15 @@ fn normal_in_cell([nw, ne, sw, se]: Cell, north_west: bool, step_m: f64) -> DVec
 }
 
 impl Area {
+    /// The same part of the next version of the ground ([`Field::edited`]) and what it changed.
+    ///
+    /// # Errors
+    /// [`EditError`] says which edit cannot be made; none is then.
+    pub fn edited(&self, edits: &[Edit]) -> Result<(Self, Changed), EditError> {
+        let ground = Ground { field: self.field.clone(), pyramid: self.pyramid.clone() };
+        ground.edited(edits).map(|(ground, changed)| (ground.whole(), changed))
+    }
+
     /// Where the posts lie.
     pub fn grid(&self) -> &Grid {
         self.field.grid()
@@ -196,10 +221,7 @@ impl Area {
 
     #[inline(always)]
     fn cell(&self, column: usize, row: usize) -> Cell {
-        let wide = self.field.grid().columns() as usize;
-        let heights = self.field.heights_m();
-        let at = row * wide + column;
-        [heights[at], heights[at + 1], heights[at + wide], heights[at + wide + 1]].map(f64::from)
+        self.field.cell_m(column, row).map(f64::from)
     }
 
     /// Ground height over a plan point, metres above mean sea level; `None` over void and beyond the world.

@@ -10,6 +10,7 @@
 pub mod bake;
 pub mod block;
 mod clearance;
+pub mod edit;
 pub mod features;
 mod field;
 pub mod frame;
@@ -17,10 +18,12 @@ mod grid;
 mod ground;
 pub mod near;
 mod noise;
+pub mod paged;
 mod projection;
 mod pyramid;
 pub mod store;
 pub mod synthetic;
+pub mod thread_time;
 pub mod verify;
 
 pub use block::rings::{RingMasks, Rings};

@@ -5,8 +5,11 @@
 //! makes what a tile holds, nearest first; the render thread never waits unless [`Settings::wait`] is set. Tiles are
 //! asked for a margin before they are wanted, as far ahead as the eye flies in [`LEAD_S`], and kept a margin longer.
 //!
-//! Invariant: what a tile holds is a function of the tile alone, so neither order nor time nor the eye's path shows.
+//! Invariant: what a tile holds is a function of the tile alone, so neither order nor time nor the eye's path shows. Where
+//! the world changes, [`NearTiles::remake`] puts another function in its place: the tiles that it reaches come again, and
+//! until then those of before are shown.
 
+use crate::edit::Changed;
 use crate::grid::Grid;
 use glam::DVec2;
 use std::collections::HashMap;
@@ -41,7 +44,7 @@ pub struct Settings {
 /// What changed in an update.
 #[derive(Debug)]
 pub enum Change<T> {
-    /// A tile is there.
+    /// A tile is there; in the place of what it was, if it was there already.
     Arrived(TileIndex, Arc<T>),
     /// A tile is no longer wanted.
     Left(TileIndex),
@@ -50,34 +53,49 @@ pub enum Change<T> {
 /// See the module. `T` is what a tile holds.
 pub struct NearTiles<T> {
     settings: Settings,
+    grid: Grid,
     corner: DVec2,
     tiles_x: i32,
     tiles_z: i32,
     state: HashMap<TileIndex, State<T>>,
-    shared: Arc<Shared>,
-    results: mpsc::Receiver<(TileIndex, T)>,
+    shared: Arc<Shared<T>>,
+    results: mpsc::Receiver<(u64, TileIndex, T)>,
     thread: Option<JoinHandle<()>>,
+    /// Counts the functions that tiles were made by, from 0.
+    number: u64,
     bytes: fn(&T) -> usize,
     eye: DVec2,
     late: usize,
 }
 
-enum State<T> {
-    Asked,
-    Ready(Arc<T>),
-    Shown,
+/// A tile that is wanted.
+struct State<T> {
+    /// Whether it was handed out.
+    shown: bool,
+    /// The least number of the function that it may be made by.
+    number: u64,
+    made: Made<T>,
 }
 
-#[derive(Default)]
-struct Shared {
-    queue: Mutex<Queue>,
+enum Made<T> {
+    Asked,
+    Ready(Arc<T>),
+    HandedOut,
+}
+
+/// Makes what a tile holds.
+type Make<T> = Box<dyn Fn(TileIndex) -> T + Send>;
+
+struct Shared<T> {
+    queue: Mutex<Queue<T>>,
     wake: Condvar,
 }
 
-#[derive(Default)]
-struct Queue {
+struct Queue<T> {
     /// Plan distance and tile; the nearest is last.
     jobs: Vec<(f64, TileIndex)>,
+    /// What tiles are made by from now on, with its number.
+    make: Option<(u64, Make<T>)>,
     closed: bool,
 }
 
@@ -89,18 +107,25 @@ impl<T: Send + 'static> NearTiles<T> {
         bytes: fn(&T) -> usize,
         make: impl Fn(TileIndex) -> T + Send + 'static,
     ) -> Self {
-        let shared = Arc::new(Shared::default());
+        let mut maker: (u64, Make<T>) = (0, Box::new(make));
+        let queue = Queue { jobs: Vec::new(), make: None, closed: false };
+        let shared = Arc::new(Shared { queue: Mutex::new(queue), wake: Condvar::new() });
         let (sender, results) = mpsc::channel();
         let theirs = shared.clone();
         let thread = std::thread::spawn(move || {
-            while let Some(tile) = theirs.next() {
-                if sender.send((tile, make(tile))).is_err() {
+            while let Some((tile, other)) = theirs.next() {
+                if let Some(other) = other {
+                    maker = other;
+                }
+                let (number, make) = &maker;
+                if sender.send((*number, tile, make(tile))).is_err() {
                     return;
                 }
             }
         });
         let tiles = |length_m: f64| (length_m / settings.side_m).ceil() as i32;
         Self {
+            grid: *grid,
             corner: DVec2::new(grid.west_m, grid.north_m),
             tiles_x: tiles(grid.east_m() - grid.west_m),
             tiles_z: tiles(grid.south_m() - grid.north_m),
@@ -109,6 +134,7 @@ impl<T: Send + 'static> NearTiles<T> {
             shared,
             results,
             thread: Some(thread),
+            number: 0,
             bytes,
             eye: DVec2::ZERO,
             late: 0,
@@ -136,6 +162,33 @@ impl<T: Send + 'static> NearTiles<T> {
         self.late
     }
 
+    /// Makes tiles by another function from now on; of those there are, the ones that it is `reached` for are made again. They
+    /// are asked for in the next update.
+    pub fn remake(&mut self, make: impl Fn(TileIndex) -> T + Send + 'static, reached: impl Fn(TileIndex) -> bool) {
+        self.number += 1;
+        let number = self.number;
+        let mut jobs = Vec::new();
+        for (tile, state) in self.state.iter_mut().filter(|(tile, _)| reached(**tile)) {
+            state.number = number;
+            // One that is asked for already waits in the queue, or comes too early and is asked for again.
+            if !matches!(state.made, Made::Asked) {
+                state.made = Made::Asked;
+                jobs.push((0.0, *tile));
+            }
+        }
+        self.shared.queue.lock().unwrap_or_else(PoisonError::into_inner).make = Some((number, Box::new(make)));
+        self.ask(jobs);
+    }
+
+    /// The same over a changed ground: those tiles that the change reaches are made again.
+    pub fn remake_where(&mut self, changed: &Changed, make: impl Fn(TileIndex) -> T + Send + 'static) {
+        let (grid, corner, side_m) = (self.grid, self.corner, self.settings.side_m);
+        self.remake(make, |tile| {
+            let low = corner + DVec2::new(f64::from(tile.x), f64::from(tile.z)) * side_m;
+            changed.reaches_square(&grid, low, low + side_m)
+        });
+    }
+
     /// Follows the eye (plan x, z, metres) at a speed, m/s; says which tiles came and went.
     pub fn update(&mut self, eye: DVec2, speed_mps: f64) -> Vec<Change<T>> {
         if eye.is_finite() {
@@ -149,7 +202,7 @@ impl<T: Send + 'static> NearTiles<T> {
         let gone: Vec<TileIndex> =
             self.state.keys().copied().filter(|tile| self.distance_m(eye, *tile) > keep_m).collect();
         for tile in gone {
-            if matches!(self.state.remove(&tile), Some(State::Shown)) {
+            if self.state.remove(&tile).is_some_and(|state| state.shown) {
                 changes.push(Change::Left(tile));
             }
         }
@@ -161,29 +214,26 @@ impl<T: Send + 'static> NearTiles<T> {
                 let tile = TileIndex { x, z };
                 let distance_m = self.distance_m(eye, tile);
                 if distance_m <= ask_m && !self.state.contains_key(&tile) {
-                    self.state.insert(tile, State::Asked);
+                    self.state.insert(tile, State { shown: false, number: self.number, made: Made::Asked });
                     jobs.push((distance_m, tile));
                 }
             }
         }
         self.ask(jobs);
-        while let Ok((tile, made)) = self.results.try_recv() {
-            self.take(tile, made);
+        while let Ok((number, tile, made)) = self.results.try_recv() {
+            self.take(number, tile, made);
         }
         if self.settings.wait {
-            while self.state.values().any(|state| matches!(state, State::Asked)) {
+            while self.state.values().any(|state| matches!(state.made, Made::Asked)) {
                 match self.results.recv() {
-                    Ok((tile, made)) => self.take(tile, made),
+                    Ok((number, tile, made)) => self.take(number, tile, made),
                     Err(_) => break,
                 }
             }
         }
         self.hand_out(eye, &mut changes);
-        self.late = self
-            .state
-            .iter()
-            .filter(|(tile, state)| !matches!(state, State::Shown) && self.distance_m(eye, **tile) <= reach_m)
-            .count();
+        self.late =
+            self.state.iter().filter(|(tile, state)| !state.shown && self.distance_m(eye, **tile) <= reach_m).count();
         changes
     }
 
@@ -201,9 +251,12 @@ impl<T: Send + 'static> NearTiles<T> {
         }
     }
 
-    fn take(&mut self, tile: TileIndex, made: T) {
-        if let Some(state) = self.state.get_mut(&tile) {
-            *state = State::Ready(Arc::new(made));
+    fn take(&mut self, number: u64, tile: TileIndex, made: T) {
+        match self.state.get_mut(&tile) {
+            Some(state) if number >= state.number => state.made = Made::Ready(Arc::new(made)),
+            // By a function of before, which was at it when the other came.
+            Some(_) => self.ask(vec![(0.0, tile)]),
+            None => {}
         }
     }
 
@@ -211,33 +264,34 @@ impl<T: Send + 'static> NearTiles<T> {
         let mut ready: Vec<(f64, TileIndex)> = self
             .state
             .iter()
-            .filter(|(_, state)| matches!(state, State::Ready(_)))
+            .filter(|(_, state)| matches!(state.made, Made::Ready(_)))
             .map(|(tile, _)| (self.distance_m(eye, *tile), *tile))
             .collect();
         ready.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut spent = 0;
         for (_, tile) in ready {
             let Some(state) = self.state.get_mut(&tile) else { continue };
-            let State::Ready(made) = state else { continue };
+            let Made::Ready(made) = &state.made else { continue };
             spent += (self.bytes)(made);
             if spent > self.settings.budget_bytes && spent > (self.bytes)(made) && !self.settings.wait {
                 break;
             }
             changes.push(Change::Arrived(tile, made.clone()));
-            *state = State::Shown;
+            (state.shown, state.made) = (true, Made::HandedOut);
         }
     }
 }
 
-impl Shared {
-    fn next(&self) -> Option<TileIndex> {
+impl<T> Shared<T> {
+    /// The next tile to make, and by what if that has changed.
+    fn next(&self) -> Option<(TileIndex, Option<(u64, Make<T>)>)> {
         let mut queue = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
         loop {
             if queue.closed {
                 return None;
             }
             match queue.jobs.pop() {
-                Some((_, tile)) => return Some(tile),
+                Some((_, tile)) => return Some((tile, queue.make.take())),
                 None => queue = self.wake.wait(queue).unwrap_or_else(PoisonError::into_inner),
             }
         }
@@ -294,6 +348,50 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn tiles_made_anew_take_the_place_of_those_shown_and_no_other_does() {
+        for wait in [true, false] {
+            let grid = Grid::centred(200.0, 4, 4).unwrap();
+            let settings = Settings { side_m: 1_500.0, reach_m: 4_000.0, budget_bytes: 1 << 20, wait };
+            let mut tiles = NearTiles::new(&grid, settings, |_| 10, |tile| (tile, 0));
+            let mut shown: HashMap<TileIndex, u32> = HashMap::new();
+            let reached = |tile: TileIndex| (tile.x + tile.z) % 3 == 0;
+            // What a tile must hold: the last function that reached it while it was there, or any later one.
+            for step in 0..40_u32 {
+                if step.is_multiple_of(4) {
+                    tiles.remake(move |tile| (tile, step), reached);
+                }
+                let quiet = step >= 36;
+                for _ in 0..if wait {
+                    1
+                } else if quiet {
+                    300
+                } else {
+                    2
+                } {
+                    let eye = DVec2::new(-6_000.0 + 300.0 * f64::from(step.min(36)), 0.0);
+                    for change in tiles.update(eye, 0.0) {
+                        match change {
+                            Change::Arrived(tile, made) => {
+                                assert_eq!(made.0, tile);
+                                let before = shown.insert(tile, made.1);
+                                assert!(before.is_none_or(|before| before < made.1 && reached(tile)), "{tile:?}");
+                            }
+                            Change::Left(tile) => assert!(shown.remove(&tile).is_some(), "{tile:?}"),
+                        }
+                    }
+                    std::thread::sleep(std::time::Duration::from_micros(if quiet && !wait { 200 } else { 0 }));
+                }
+                if wait || step == 39 {
+                    let last = step / 4 * 4;
+                    assert!(shown.iter().filter(|(tile, _)| reached(**tile)).all(|(_, by)| *by == last), "{step}");
+                    assert_eq!(tiles.late(), 0);
+                }
+            }
+            assert!(shown.len() > 10);
         }
     }
 

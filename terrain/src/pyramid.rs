@@ -8,7 +8,11 @@
 //! Source of the idea: A. Tevs, I. Ihrke, H.-P. Seidel. Maximum mipmaps for fast, accurate, and scalable dynamic height
 //! field rendering. I3D 2008.
 
+use crate::edit::Changed;
 use crate::field::Field;
+use crate::grid::PostRect;
+use crate::paged::Paged;
+use std::collections::BTreeSet;
 
 /// Finest level kept: nodes of 4 x 4 cells. Finer ones would cost as much memory as the posts and skip too little.
 pub const BASE: u32 = 2;
@@ -31,7 +35,7 @@ pub struct Pyramid {
 #[derive(Debug, Clone, PartialEq)]
 struct Level {
     columns: usize,
-    nodes: Vec<Range>,
+    nodes: Paged<Range>,
 }
 
 impl Range {
@@ -74,18 +78,42 @@ impl Pyramid {
                 }
             }
         }
-        let mut levels = vec![Level { columns: wide, nodes }];
+        let mut levels = vec![Level { columns: wide, nodes: Paged::new(nodes) }];
         while let Some(level) = levels.last().filter(|level| level.nodes.len() > 1) {
-            let rows = level.nodes.len() / level.columns;
-            let (wide, high) = (level.columns.div_ceil(2), rows.div_ceil(2));
-            let mut nodes = vec![Range::VOID; wide * high];
-            for row in 0..rows {
-                for column in 0..level.columns {
-                    let parent = &mut nodes[row / 2 * wide + column / 2];
-                    *parent = parent.union(level.nodes[row * level.columns + column]);
-                }
+            let (wide, high) = (level.columns.div_ceil(2), level.rows().div_ceil(2));
+            let nodes = (0..wide * high).map(|at| level.parent(at % wide, at / wide)).collect();
+            levels.push(Level { columns: wide, nodes: Paged::new(nodes) });
+        }
+        Self { levels }
+    }
+
+    /// The pyramid of a field's next version: only what has a changed post is made anew.
+    pub(crate) fn edited(&self, field: &Field, changed: &Changed) -> Self {
+        let side = 1 << BASE;
+        let mut at: BTreeSet<(usize, usize)> = BTreeSet::new();
+        let (wide, high) = (self.levels[0].columns, self.levels[0].rows());
+        for rect in changed.rects() {
+            // A post on a node's border belongs to the nodes on both sides.
+            let nodes = |first: i64, count: u32, most: usize| {
+                let last = first + i64::from(count) - 1;
+                ((first - 1).max(0) as usize / side)..=(last as usize / side).min(most - 1)
+            };
+            for row in nodes(rect.row, rect.rows, high) {
+                at.extend(nodes(rect.column, rect.columns, wide).map(|column| (row, column)));
             }
-            levels.push(Level { columns: wide, nodes });
+        }
+        let mut levels: Vec<Level> = Vec::with_capacity(self.levels.len());
+        for level in &self.levels {
+            let made = at.iter().map(|&(row, column)| {
+                let node = match levels.last() {
+                    Some(below) => below.parent(column, row),
+                    None => base_node(field, column, row),
+                };
+                (row * level.columns + column, node)
+            });
+            let nodes = level.nodes.with(made);
+            levels.push(Level { columns: level.columns, nodes });
+            at = at.iter().map(|(row, column)| (row / 2, column / 2)).collect();
         }
         Self { levels }
     }
@@ -98,18 +126,44 @@ impl Pyramid {
     /// The node of a level that holds a cell; `level` within [`BASE`]..=[`Self::top`].
     pub fn node(&self, level: u32, cell_column: u32, cell_row: u32) -> Range {
         let level_nodes = &self.levels[(level - BASE) as usize];
-        level_nodes.nodes[(cell_row >> level) as usize * level_nodes.columns + (cell_column >> level) as usize]
+        level_nodes.nodes.get((cell_row >> level) as usize * level_nodes.columns + (cell_column >> level) as usize)
     }
 
     /// Range of all heights.
     pub fn all(&self) -> Range {
-        self.levels.last().map_or(Range::VOID, |level| level.nodes[0])
+        self.levels.last().map_or(Range::VOID, |level| level.nodes.get(0))
     }
 
     /// Size in bytes.
     pub fn bytes(&self) -> usize {
-        self.levels.iter().map(|level| size_of_val(level.nodes.as_slice())).sum()
+        self.levels.iter().map(|level| level.nodes.bytes()).sum()
     }
+}
+
+impl Level {
+    fn rows(&self) -> usize {
+        self.nodes.len() / self.columns
+    }
+
+    /// The node of the next level that has this level's nodes from twice its place on.
+    fn parent(&self, column: usize, row: usize) -> Range {
+        let (columns, rows) = ((2 * column + 2).min(self.columns), (2 * row + 2).min(self.rows()));
+        (2 * row..rows)
+            .flat_map(|row| (2 * column..columns).map(move |column| (row, column)))
+            .fold(Range::VOID, |range, (row, column)| range.union(self.nodes.get(row * self.columns + column)))
+    }
+}
+
+/// A node of the finest level kept, from its posts.
+fn base_node(field: &Field, column: usize, row: usize) -> Range {
+    let side = 1 << BASE;
+    let rect = PostRect {
+        column: (column * side) as i64,
+        row: (row * side) as i64,
+        columns: side as u32 + 1,
+        rows: side as u32 + 1,
+    };
+    field.read(rect).into_iter().fold(Range::VOID, Range::include)
 }
 
 #[cfg(test)]

@@ -204,8 +204,8 @@ fn the_default_world_has_airfields_on_planes() {
             if after[post] != before[post] || after[beside] != before[beside] {
                 let slope = |heights: &[f32]| f64::from((heights[post] - heights[beside]).abs()) / step_m;
                 changed += 1;
-                steep += usize::from(slope(after) > 0.1251 && slope(after) > slope(before));
-                steepest = steepest.max(slope(after));
+                steep += usize::from(slope(&after) > 0.1251 && slope(&after) > slope(&before));
+                steepest = steepest.max(slope(&after));
             }
         }
     }

@@ -98,7 +98,14 @@ fn looks(world: &World) -> ([f64; 3], f64) {
     for block in grid.blocks() {
         let dress =
             terrain::block::ground_map::Dress { cover: &world.cover, strips: &[], imagery: world.imagery.as_deref() };
-        let map = terrain::block::ground_map::ground_map(&world.field, block, &climate, &dress, &|_, _| f64::INFINITY);
+        let map = terrain::block::ground_map::ground_map(
+            &world.field,
+            block,
+            &climate,
+            &dress,
+            &|_, _| f64::INFINITY,
+            &|_, _| false,
+        );
         let texels: Vec<&[u8]> = map[..terrain::block::ground_map::MAP_BYTES].chunks_exact(4).collect();
         for pair in texels.windows(2) {
             for channel in 0..3 {

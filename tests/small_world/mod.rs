@@ -12,7 +12,8 @@ pub fn write(test: &str) -> PathBuf {
     let (lat_deg, lon_deg) = (42.0, 77.0);
     let grid = Grid::centred(200.0, 14, 14).expect("a grid");
     let field = synthetic::ridges(grid, 7);
-    let sound = || field.heights_m().iter().map(|h| f64::from(*h));
+    let heights_m = field.heights_m();
+    let sound = || heights_m.iter().map(|h| f64::from(*h));
     let statistics = Statistics {
         posts: grid.posts(),
         min_m: sound().fold(f64::MAX, f64::min),

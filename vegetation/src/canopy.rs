@@ -6,7 +6,8 @@
 //!
 //! Invariant: a tile is a function of the world and the tile alone; neighbours agree on their border.
 
-use crate::place::{Nursery, corner_m, lattice};
+use crate::noise::noise;
+use crate::place::{Nursery, corner_m};
 use crate::species::Site;
 use glam::DVec2;
 use terrain::Grid;
@@ -93,7 +94,7 @@ pub fn canopy(nursery: &Nursery, tile: TileIndex) -> Canopy {
             let tall =
                 HIGH_M[if conifers > 170 { Site::Conifer } else { Site::Broadleaf } as usize] * (1.0 - 0.6 * low);
             // Stands differ over some 600 and 200 m.
-            let shade = 0.55 * lattice(at / 610.0, 61) + 0.45 * lattice(at / 190.0, 62);
+            let shade = 0.55 * noise(at / 610.0, 61) + 0.45 * noise(at / 190.0, 62);
             let looks = [(forest * 255 / 4) as u8, conifers.min(255) as u8, (shade * 255.0) as u8, 0];
             corners.push(Corner { at: [column as u16, row as u16], ground_m, high_m: share * tall, looks });
         }

@@ -1,7 +1,7 @@
 //! Where no tree may stand: roads, running water, buildings, airfields.
 //!
 //! Shapes are sorted once into squares of [`SQUARE_M`] of the world's plane, each into every square that it comes near, so
-//! a plant asks few of them. Plan metres, f64; only +, -, *, / and comparisons decide, so the answer is the same on
+//! a plant asks few of them. [`Clearings::near`] looks up the squares of a tile once. Plan metres, f64; only +, -, *, / and comparisons decide, so the answer is the same on
 //! every machine. Lakes are not here: see [`terrain::features::lakes`].
 
 use glam::DVec2;
@@ -30,6 +30,17 @@ enum Shape {
     Strip { from: DVec2, to: DVec2, reach_m: f64 },
     /// Inside a ring (even-odd).
     Ring(usize),
+}
+
+/// What is kept free in and about a rectangle.
+#[derive(Debug)]
+pub struct ClearingsNear<'a> {
+    all: &'a Clearings,
+    /// The square at its north-west corner.
+    first: (i32, i32),
+    wide: usize,
+    /// Square by square, row by row; empty where nothing is kept free.
+    squares: Vec<&'a [Shape]>,
 }
 
 /// See the module.
@@ -71,7 +82,25 @@ impl Clearings {
 
     /// Whether a plan point must stay free.
     pub fn holds(&self, at: DVec2) -> bool {
-        let Some(shapes) = self.squares.get(&square(at)) else { return false };
+        self.squares.get(&square(at)).is_some_and(|shapes| self.any_holds(shapes, at))
+    }
+
+    /// What is needed to answer for the points of a plan rectangle.
+    pub fn near(&self, low: DVec2, high: DVec2) -> ClearingsNear<'_> {
+        let (first, last) = (square(low), square(high));
+        let wide = (last.0 - first.0 + 1) as usize;
+        let mut squares = Vec::new();
+        if !self.squares.is_empty() {
+            let rows = (first.1..=last.1).flat_map(|z| (first.0..=last.0).map(move |x| (x, z)));
+            squares.extend(rows.map(|at| self.squares.get(&at).map_or(&[][..], Vec::as_slice)));
+        }
+        if squares.iter().all(|shapes| shapes.is_empty()) {
+            squares.clear();
+        }
+        ClearingsNear { all: self, first, wide, squares }
+    }
+
+    fn any_holds(&self, shapes: &[Shape], at: DVec2) -> bool {
         shapes.iter().any(|shape| match shape {
             Shape::Strip { from, to, reach_m } => distance_squared(at, *from, *to) < reach_m * reach_m,
             Shape::Ring(ring) => inside(at, &self.rings[*ring]),
@@ -112,6 +141,18 @@ impl Clearings {
                 }
             }
         }
+    }
+}
+
+impl ClearingsNear<'_> {
+    /// [`Clearings::holds`] of a point of the rectangle.
+    pub fn holds(&self, at: DVec2) -> bool {
+        if self.squares.is_empty() {
+            return false;
+        }
+        let (x, z) = square(at);
+        let number = (z - self.first.1) as usize * self.wide + (x - self.first.0) as usize;
+        self.squares.get(number).is_some_and(|shapes| self.all.any_holds(shapes, at))
     }
 }
 
@@ -170,6 +211,7 @@ mod tests {
         };
         let features = Features { roads: vec![road], buildings: vec![building], ..Features::default() };
         let clearings = Clearings::new(&features);
+        let at_hand = clearings.near(DVec2::splat(-1_600.0), DVec2::splat(1_600.0));
         let mut held = 0;
         for i in 0..20_000 {
             let [a, b, _] = crate::scatter::uniforms(i, 1, 5);
@@ -179,9 +221,11 @@ mod tests {
             let ring: Vec<DVec2> = outline.iter().chain(&outline[..1]).copied().collect();
             let slow = near(&line, 7.0) || near(&ring, 3.0) || inside(at, &outline);
             assert_eq!(clearings.holds(at), slow, "{at}");
+            assert_eq!(at_hand.holds(at), slow, "{at}");
             held += i32::from(slow);
         }
         assert!(held > 300, "{held}");
-        assert!(!Clearings::new(&Features::default()).holds(DVec2::ZERO));
+        let nothing = Clearings::default();
+        assert!(!nothing.holds(DVec2::ZERO) && !nothing.near(DVec2::ZERO, DVec2::ONE).holds(DVec2::ONE));
     }
 }

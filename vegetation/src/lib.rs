@@ -7,6 +7,7 @@
 pub mod canopy;
 pub mod clearings;
 pub mod detail;
+mod noise;
 pub mod pictures;
 pub mod place;
 pub mod scatter;

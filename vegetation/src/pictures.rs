@@ -10,6 +10,7 @@
 use crate::detail::{ALL, Model, WIDTHS, model};
 use crate::scatter::uniform;
 use glam::{Vec2, Vec3};
+use std::sync::OnceLock;
 
 /// Texels of a picture, across and down.
 pub const SIZE: [usize; 2] = [64, 128];
@@ -36,8 +37,13 @@ struct Canvas {
 /// Mips of a picture, largest first, as texture bytes.
 pub type Picture = Vec<Vec<u8>>;
 
-/// All of them, in the order of their layers.
-pub fn all() -> Vec<Picture> {
+/// All of them, in the order of their layers. Made once a process: some 0.1 s of work, which a thread may do ahead.
+pub fn all() -> &'static [Picture] {
+    static ALL: OnceLock<Vec<Picture>> = OnceLock::new();
+    ALL.get_or_init(make_all)
+}
+
+fn make_all() -> Vec<Picture> {
     let leaves: Vec<Canvas> = (0..LEAVES as u8).map(leaf).collect();
     let mut pictures: Vec<Canvas> = leaves.clone();
     for (shape, width) in ALL.into_iter().zip(WIDTHS) {
@@ -214,8 +220,13 @@ fn finish(canvas: Canvas) -> Picture {
 pub const CROWNS: usize = 128;
 
 /// A closed forest from above, tiling, with mips: red a shade, green and blue the slope east and south, alpha the height of
-/// the crowns. About 20 crowns a side.
-pub fn crowns() -> Picture {
+/// the crowns. About 20 crowns a side. Made once a process, as [`all`] is.
+pub fn crowns() -> &'static Picture {
+    static CROWNS: OnceLock<Picture> = OnceLock::new();
+    CROWNS.get_or_init(make_crowns)
+}
+
+fn make_crowns() -> Picture {
     const ACROSS: i32 = 20;
     let side = CROWNS as f32;
     let height = |x: f32, z: f32| {

@@ -9,14 +9,14 @@
 //! subset of every larger share; a plant's `height_m` is the ground query at its own quantised place, rounded to f32.
 
 use crate::clearings::Clearings;
-use crate::scatter::{hash, uniform};
-use crate::species::{Flora, SPECIES, Shape, Site};
+use crate::species::{Flora, SPECIES, Shape};
+use bed::Bed;
 use glam::DVec2;
 use std::sync::{Arc, OnceLock};
 use terrain::block::Landscape;
-use terrain::features::cover::{Cover, CoverClass};
+use terrain::features::cover::Cover;
 use terrain::near::TileIndex;
-use terrain::{Area, Grid};
+use terrain::{Area, Grid, thread_time};
 
 /// Parts of a tile's side that a place is counted in.
 pub const PARTS: f64 = 65_536.0;
@@ -50,7 +50,7 @@ pub const TIERS: [Tier; 3] = [
 ];
 
 /// A plant, as it goes to the GPU.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Plant {
     /// East and south of the tile's corner, in parts of its side ([`PARTS`]).
     pub at: [u16; 2],
@@ -73,7 +73,7 @@ pub struct Planted {
     pub plants: Vec<Plant>,
     /// [`SQUARES`] x [`SQUARES`].
     pub squares: Vec<Square>,
-    /// Wall time to place them, milliseconds.
+    /// Time of a processor to place them, milliseconds.
     pub took_ms: f64,
 }
 
@@ -172,144 +172,16 @@ impl Nursery {
     /// The plants of a tile, `share` (0..=1) of them.
     pub fn plants(&self, tier: &Tier, tile: TileIndex, share: f32) -> Planted {
         // Made once, by the first tile: no tile's own time.
-        let clearings = self.clearings();
-        let start = std::time::Instant::now();
-        let corner = corner_m(self.area.grid(), tier.side_m, tile);
-        let far = corner + tier.side_m;
-        let lakes = self.landscape.lakes.near(corner, far, 10.0);
-        let mut squares: Vec<Vec<Plant>> = vec![Vec::new(); (SQUARES * SQUARES) as usize];
-        for row in 0..tier.cells {
-            for column in 0..tier.cells {
-                let Some(plant) = self.plant(tier, tile, corner, column, row, share) else { continue };
-                let at = plant.plan_m(tier, corner);
-                if clearings.holds(at) || (!lakes.is_dry() && lakes.signed_distance_m(at) < 8.0) {
-                    continue;
-                }
-                let part = |at: u16| u32::from(at) * SQUARES / 65_536;
-                squares[(part(plant.at[1]) * SQUARES + part(plant.at[0])) as usize].push(plant);
-            }
-        }
-        let mut planted = Planted::default();
-        for mut square in squares {
-            // Those that leave last come first, so that a part far away is the beginning of its list.
-            square.sort_by_key(|plant| (!plant.is_conifer(), u8::MAX - plant.turn));
-            let feet_m = square.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], plant| {
-                [low.min(plant.height_m), high.max(plant.height_m)]
-            });
-            let conifers_end = (planted.plants.len() + square.partition_point(Plant::is_conifer)) as u32;
-            planted.plants.extend(square);
-            planted.squares.push(Square { conifers_end, end: planted.plants.len() as u32, feet_m });
-        }
-        planted.took_ms = start.elapsed().as_secs_f64() * 1e3;
+        let _ = self.clearings();
+        let before = thread_time::spent();
+        let mut planted = Bed::new(self, tier, tile, share).planted();
+        planted.took_ms = thread_time::spent().saturating_sub(before).as_secs_f64() * 1e3;
         planted
     }
-
-    /// Share of the plants that open ground has water for: few in dry lands down low, where streams alone have trees.
-    fn moisture(&self, cover: CoverClass, height_m: f32) -> f32 {
-        let kept = match cover {
-            CoverClass::Grass => 0.06,
-            CoverClass::Field => 0.25,
-            CoverClass::Scrub => 0.5,
-            _ => return 1.0,
-        };
-        let wet = ((height_m / self.flora.tree_line_m - 0.35) * 4.0).clamp(0.0, 1.0);
-        1.0 - self.flora.dryness * (1.0 - kept) * (1.0 - wet)
-    }
-
-    /// The plant of a hash cell, before clearings and lakes.
-    fn plant(&self, tier: &Tier, tile: TileIndex, corner: DVec2, column: u32, row: u32, share: f32) -> Option<Plant> {
-        let cells = tier.cells as i32;
-        let (cell_x, cell_z) = (tile.x.wrapping_mul(cells), tile.z.wrapping_mul(cells));
-        let (cell_x, cell_z) = (cell_x.wrapping_add(column as i32), cell_z.wrapping_add(row as i32));
-        let salt = tier.number * 8;
-        let places = hash(cell_x, cell_z, salt);
-        // Whole parts: the cell's corner and a share of the cell, in sixteenths of a part.
-        let parts = |at: u32, word: u32| {
-            let cell = u64::from(word >> 16) + (u64::from(at) << 16);
-            (cell / u64::from(tier.cells)).min(65_535) as u16
-        };
-        let at = [parts(column, places[0]), parts(row, places[1])];
-        let kinds = hash(cell_x, cell_z, salt + 1);
-        let rank = uniform(places[2]);
-        if uniform(kinds[0]) >= share {
-            return None;
-        }
-        let mut plant = Plant { at, height_m: 0.0, species: 0, size: 0, turn: 0, tint: 0 };
-        let plan = plant.plan_m(tier, corner);
-        // A cover's edge is as ragged as its cells are wide.
-        let edges = hash(cell_x, cell_z, salt + 2);
-        let blur_m = self.cover().cell_m() * 0.7;
-        let off = DVec2::new(f64::from(uniform(edges[0])) - 0.5, f64::from(uniform(edges[1])) - 0.5) * blur_m;
-        let cover = self.cover().class_at(plan.x + off.x, plan.y + off.y);
-        let site = Site::of(cover)?;
-        let dense = density(tier, cover) * thicket(cover, plan);
-        if rank >= dense {
-            return None;
-        }
-        // A ragged edge ends at the water, at sand and at tarmac.
-        let here = self.cover().class_at(plan.x, plan.y);
-        if matches!(here, CoverClass::Water | CoverClass::Sand | CoverClass::Paved) {
-            return None;
-        }
-        let (height_m, normal) = self.area.height_and_normal(plan.x, plan.y)?;
-        // Level ground at 0 m is the sea, as the ground map has it.
-        if height_m.abs() < SEA_M || rank >= dense * self.moisture(cover, height_m as f32) {
-            return None;
-        }
-        let steep = (1.0 - normal.y * normal.y).max(0.0).sqrt() as f32;
-        plant.height_m = height_m as f32;
-        let species = self.flora.choose(site, plant.height_m, steep, uniform(kinds[1]))?;
-        plant.species = species as u8;
-        // Few are the tallest; towards the tree line all stay low.
-        let [a, b] = [uniform(kinds[2]), uniform(edges[2])];
-        let high = ((plant.height_m / self.flora.tree_line_m - 0.8) / 0.3).clamp(0.0, 1.0);
-        let grown = (0.5 * a + 0.5 * b) * (1.0 - 0.75 * high);
-        plant.size = (grown * 255.0) as u8;
-        let looks = hash(cell_x, cell_z, salt + 3);
-        plant.turn = (looks[0] >> 24) as u8;
-        plant.tint = (looks[1] >> 24) as u8;
-        Some(plant)
-    }
 }
 
-/// Ground nearer to 0 m than this is the sea, as [`terrain::block::ground_map`] has it, metres.
-const SEA_M: f64 = 0.5;
-
-/// Share of a tier's cells that hold a plant on a cover.
-fn density(tier: &Tier, cover: CoverClass) -> f32 {
-    let [far, middle, near] = match cover {
-        CoverClass::Conifer | CoverClass::MixedForest | CoverClass::Broadleaf => [0.97, 0.90, 0.75],
-        CoverClass::Scrub => [0.05, 0.10, 0.30],
-        CoverClass::Grass => [0.02, 0.012, 0.03],
-        CoverClass::Field => [0.015, 0.004, 0.003],
-        CoverClass::BuiltUp => [0.30, 0.18, 0.08],
-        _ => [0.0; 3],
-    };
-    [far, middle, near][tier.number.min(2) as usize]
-}
-
-/// Forests have glades, open ground has thickets: a noise over some 300 and 90 m that spares or drops plants.
-fn thicket(cover: CoverClass, at: DVec2) -> f32 {
-    let noise = 0.6 * lattice(at / 310.0, 101) + 0.4 * lattice(at / 87.0, 102);
-    if cover.is_forest() {
-        // Full but for the lowest fifth of the noise.
-        ((noise - 0.22) * 6.0).clamp(0.12, 1.0)
-    } else {
-        // None in most places, dense in few.
-        ((noise - 0.42) * 6.0).clamp(0.05, 3.0)
-    }
-}
-
-/// Value noise, 0..1: products and sums only.
-pub(crate) fn lattice(at: DVec2, salt: u32) -> f32 {
-    let (x, z) = (at.x.floor(), at.y.floor());
-    let ease = |t: f32| t * t * (3.0 - 2.0 * t);
-    let (u, v) = (ease((at.x - x) as f32), ease((at.y - z) as f32));
-    let corner = |dx: i32, dz: i32| uniform(hash((x as i32).wrapping_add(dx), (z as i32).wrapping_add(dz), salt)[0]);
-    let north = corner(0, 0) + u * (corner(1, 0) - corner(0, 0));
-    let south = corner(0, 1) + u * (corner(1, 1) - corner(0, 1));
-    north + v * (south - north)
-}
-
+mod bed;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod twin;

@@ -266,10 +266,10 @@ pub const SPECIES: [Species; 14] = [
 pub struct Flora {
     /// Height of the tree line on level ground, metres.
     pub tree_line_m: f32,
-    /// Latitude without sign, degrees.
-    latitude_deg: f32,
     /// [`Climate::dryness`].
     pub dryness: f32,
+    /// Which species the latitude and the dryness let grow on each [`Site`]: a bit each.
+    here: [u32; 6],
 }
 
 impl Site {
@@ -291,42 +291,59 @@ impl Flora {
     /// Of a world's climate and latitude.
     pub fn new(climate: &Climate, latitude_rad: f64) -> Self {
         // Trees end about a quarter below the snow line of level ground (C. Troll 1962: 700 to 1,000 m below it).
-        Self {
-            tree_line_m: (climate.snow_line_m * 0.77).max(200.0),
-            latitude_deg: (latitude_rad.to_degrees().abs() as f32).min(90.0),
-            dryness: climate.dryness,
+        let latitude_deg = (latitude_rad.to_degrees().abs() as f32).min(90.0);
+        let dryness = climate.dryness;
+        let mut here = [0; 6];
+        for (number, species) in SPECIES.iter().enumerate() {
+            if within(species.latitudes_deg, latitude_deg) && within(species.dryness, dryness) {
+                for (here, weight) in here.iter_mut().zip(species.weights) {
+                    *here |= u32::from(weight > 0.0) << number;
+                }
+            }
         }
+        Self { tree_line_m: (climate.snow_line_m * 0.77).max(200.0), dryness, here }
     }
 
     /// The species for a site, by a number in 0..1; `None` if none of them grows there.
     pub fn choose(&self, site: Site, height_m: f32, steep: f32, number: f32) -> Option<usize> {
-        let weight = |species: &Species| {
-            let within = |range: [f32; 2], value: f32| (range[0]..=range[1]).contains(&value);
-            let grows = within(species.belt, height_m / self.tree_line_m)
-                && within(species.latitudes_deg, self.latitude_deg)
-                && within(species.dryness, self.dryness)
-                && steep <= species.steepest;
-            if grows { species.weights[site as usize] } else { 0.0 }
-        };
-        let total: f32 = SPECIES.iter().map(weight).sum();
-        let mut rest = number * total;
-        if total <= 0.0 {
-            return None;
-        }
-        let mut last = None;
-        for (at, species) in SPECIES.iter().enumerate() {
-            let weight = weight(species);
-            if weight > 0.0 {
-                last = Some(at);
-                if rest < weight {
-                    break;
-                }
-                rest -= weight;
+        let belt = height_m / self.tree_line_m;
+        let mut weights = [0.0; SPECIES.len()];
+        let mut total = 0.0;
+        for at in bits(self.here[site as usize]) {
+            let species = &SPECIES[at];
+            if within(species.belt, belt) && steep <= species.steepest {
+                weights[at] = species.weights[site as usize];
+                total += weights[at];
             }
+        }
+        let mut rest = number * total;
+        let mut last = None;
+        for at in bits(self.here[site as usize]).filter(|at| weights[*at] > 0.0) {
+            last = Some(at);
+            if rest < weights[at] {
+                break;
+            }
+            rest -= weights[at];
         }
         last
     }
 }
+
+fn within(range: [f32; 2], value: f32) -> bool {
+    (range[0]..=range[1]).contains(&value)
+}
+
+/// Numbers of the bits that are set, from the lowest.
+fn bits(mut word: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let at = word.trailing_zeros();
+        word &= word.wrapping_sub(1);
+        (at < u32::BITS).then_some(at as usize)
+    })
+}
+
+// A bit for each.
+const _: () = assert!(SPECIES.len() <= 32);
 
 #[cfg(test)]
 mod tests {

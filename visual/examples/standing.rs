@@ -204,7 +204,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for _ in 0..2 {
             renderer.render(&gpu, &frame, &[&target.view], |about, layer, pass| match layer {
                 Layer::Solid => {
-                    terrain.draw(about.index, pass);
+                    terrain.draw(about.index, &|_| false, pass);
                     objects.draw(about.index, terrain.bindings().1, pass);
                 }
                 Layer::Blended => particles.draw(about.index, pass),

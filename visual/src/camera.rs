@@ -141,6 +141,14 @@ impl Frustum {
             plane.normal.dot(corner) + plane.offset_m >= 0.0
         })
     }
+
+    /// True only where the whole box lies inside every plane.
+    pub fn holds_box(&self, low_m: Vec3, high_m: Vec3) -> bool {
+        self.planes.iter().all(|plane| {
+            let corner = Vec3::select(plane.normal.cmpge(Vec3::ZERO), low_m, high_m);
+            plane.normal.dot(corner) + plane.offset_m >= 0.0
+        })
+    }
 }
 
 #[cfg(test)]
@@ -185,9 +193,11 @@ mod tests {
             let point = (view.ray(x, y) * 500.0).as_vec3();
             if !edge {
                 assert_eq!(frustum.may_see_box(point - 1e-3, point + 1e-3), inside, "{x} {y}");
+                assert_eq!(frustum.holds_box(point - 1e-3, point + 1e-3), inside, "{x} {y}");
             }
             assert!(!frustum.may_see_box(-point - 1e-3, -point + 1e-3), "behind: {x} {y}");
         }
         assert!(frustum.may_see_box(Vec3::splat(-1e4), Vec3::splat(1e4)), "the box around the eye");
+        assert!(!frustum.holds_box(Vec3::splat(-1e4), Vec3::splat(1e4)), "the box around the eye");
     }
 }

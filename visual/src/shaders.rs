@@ -26,6 +26,7 @@ pub const SHARED: &[(&str, &str)] = &[
     ("shared/light.wgsl", include_str!("../../shaders/shared/light.wgsl")),
     ("shared/posts.wgsl", include_str!("../../shaders/shared/posts.wgsl")),
     ("shared/sky.wgsl", include_str!("../../shaders/shared/sky.wgsl")),
+    ("shared/water.wgsl", include_str!("../../shaders/shared/water.wgsl")),
 ];
 
 /// The whole text of a shader by name. An unknown name gives a text that no compiler accepts and that says what was

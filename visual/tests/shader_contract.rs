@@ -7,7 +7,7 @@ use terrain::block::window::MAX_BLOCKS;
 use visual::passes::canopy::CanopyTile;
 use visual::passes::lights::{LightInstance, LightsUniforms};
 use visual::passes::lines::Segment;
-use visual::passes::plants::{MOST_SPECIES, SpeciesEntry};
+use visual::passes::plants_kinds::{MOST_SPECIES, SpeciesEntry};
 use visual::passes::plants_seen::Stand;
 use visual::passes::terrain::{BlockEntry, WindowUniforms};
 use visual::shaders;
@@ -309,6 +309,8 @@ fn what_is_draped_has_the_same_numbers_on_both_sides() {
     let source = shaders::joined("overlay.wgsl");
     let kinds = [
         ("WATER", Kind::Water),
+        ("WATER_AREA", Kind::WaterArea),
+        ("STILL_WATER", Kind::StillWater),
         ("PATH", Kind::Path),
         ("TRACK", Kind::Track),
         ("GRAVEL", Kind::Gravel),

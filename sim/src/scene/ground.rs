@@ -17,6 +17,7 @@ use glam::DVec3;
 use std::fmt;
 use std::sync::Arc;
 use terrain::Area;
+use terrain::edit::{Edit, EditError};
 use terrain::features::cover::Cover;
 use terrain::features::index::{ObjectId, ObjectIndex};
 
@@ -105,6 +106,23 @@ impl SceneGround {
     /// No ground anywhere.
     pub fn void() -> Self {
         Self::heights(|_, _| None)
+    }
+
+    /// Counts the edits that made it, from 0; 0 of a function.
+    pub fn version(&self) -> u32 {
+        self.area.as_ref().map_or(0, |area| area.field().version())
+    }
+
+    /// The next version of the ground: edits made, and what stands on it standing anew where it changed. A ground that is a
+    /// function has no posts and stays as it is. Cost: see [`Area::edited`] and [`ObjectIndex::edited`].
+    ///
+    /// # Errors
+    /// [`EditError`] says which edit cannot be made; none is then.
+    pub fn edited(&self, edits: &[Edit]) -> Result<Self, EditError> {
+        let Some(area) = &self.area else { return Ok(self.clone()) };
+        let (area, changed) = area.edited(edits)?;
+        let objects = self.objects.as_ref().map(|objects| Arc::new(objects.edited(&area, &changed).0));
+        Ok(Self { objects, ..Self::from(area) })
     }
 
     /// Heights as a function.

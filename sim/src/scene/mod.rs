@@ -149,6 +149,8 @@ pub struct Scene {
     swept_anew: bool,
     /// Whether targets wait for their height over the ground.
     unsettled: bool,
+    /// Version of the ground of the last step, once there was one. The ground is the caller's: it is not saved.
+    ground_version: Option<u32>,
     grid: TargetGrid,
     bursts: Vec<Burst>,
     /// Rounds that each owner has fired.
@@ -234,6 +236,7 @@ impl Scene {
             swept: Vec::new(),
             swept_anew: false,
             unsettled: false,
+            ground_version: None,
             grid: TargetGrid::default(),
             bursts: Vec::new(),
             fired: BTreeMap::new(),

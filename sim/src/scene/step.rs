@@ -23,7 +23,14 @@ type Hit = (StableId, StableId, u64);
 
 impl Scene {
     /// Takes one step. Pausing is the caller's: a clock that is paused gives no steps to take.
+    ///
+    /// The ground may be another version than in the step before: all that this step meets is the new one, and the snapshot
+    /// after it names it.
     pub fn step(&mut self, ground: &SceneGround) {
+        let version = ground.version();
+        if self.ground_version.replace(version).is_some_and(|before| before != version) {
+            self.ground_changed();
+        }
         self.settle(ground);
         self.obey();
         let (dt_s, from_s, date) = (self.clock.step_s(), self.clock.time_s(), self.clock.date());

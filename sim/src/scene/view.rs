@@ -123,6 +123,7 @@ impl Scene {
         let aircraft = self.aircraft();
         let track_ended = self.mode == Mode::Track && self.track.as_ref().is_some_and(|t| self.track_m >= t.length_m());
         Snapshot {
+            ground_version: self.ground_version.unwrap_or(0),
             step: self.clock.step(),
             time_s: self.clock.time_s(),
             date: self.clock.date(),

@@ -159,7 +159,8 @@ fn tint(world: &World, climate: &Climate, blocks: &[BlockIndex], sheets: &[Sheet
                 ground_map::SHORE_RAMP_M * 2.0,
             );
             let shore_m = |x_m: f64, z_m: f64| near.signed_distance_m(DVec2::new(x_m, z_m));
-            let map = ground_map::ground_map(&world.field, block, climate, &dress, &shore_m);
+            let sea_known = |x_m: f64, z_m: f64| near.knows_the_sea(DVec2::new(x_m, z_m));
+            let map = ground_map::ground_map(&world.field, block, climate, &dress, &shore_m, &sea_known);
             let mut sums: std::collections::BTreeMap<usize, [f64; 4]> = std::collections::BTreeMap::new();
             for (at, texel) in map[..MAP_BYTES].chunks_exact(4).enumerate().filter(|(_, texel)| texel[3] <= 127) {
                 let part = |i: usize| i as f64 * grid.block_m() / f64::from(SIDE - 1);

@@ -1,7 +1,7 @@
 //! A small pool of threads that makes payloads, meshes and light maps, nearest first.
 //!
 //! The render thread asks and collects; it never waits unless it wants to (lockstep). A request that is no longer wanted
-//! is withdrawn before its turn comes.
+//! is withdrawn before its turn comes. Each request names the landscape to make it from, and comes back with its number.
 
 use super::payload::{Landscape, Mesh, Payload};
 use crate::block::light;
@@ -39,7 +39,7 @@ pub enum Built {
 /// See the module.
 pub struct Builder {
     shared: Arc<Shared>,
-    results: mpsc::Receiver<Built>,
+    results: mpsc::Receiver<(u64, Built)>,
     threads: Vec<JoinHandle<()>>,
 }
 
@@ -54,10 +54,17 @@ struct Shared {
 
 #[derive(Default)]
 struct Queue {
-    /// Distance in metres and job; the nearest is last.
-    jobs: Vec<(f64, Job)>,
+    /// The nearest is last.
+    jobs: Vec<Asked>,
     sorted: bool,
     closed: bool,
+}
+
+struct Asked {
+    distance_m: f64,
+    job: Job,
+    number: u64,
+    landscape: Arc<Landscape>,
 }
 
 /// What building has cost so far.
@@ -81,8 +88,8 @@ impl Job {
 }
 
 impl Builder {
-    /// Starts `threads` builders (at least one) on a landscape.
-    pub fn new(landscape: Arc<Landscape>, threads: usize) -> Self {
+    /// Starts `threads` builders (at least one).
+    pub fn new(threads: usize) -> Self {
         let shared = Arc::new(Shared {
             queue: Mutex::default(),
             wake: Condvar::new(),
@@ -93,32 +100,37 @@ impl Builder {
         let (sender, results) = mpsc::channel();
         let threads = (0..threads.max(1))
             .map(|_| {
-                let (landscape, shared, sender) = (landscape.clone(), shared.clone(), sender.clone());
-                std::thread::spawn(move || work(&landscape, &shared, &sender))
+                let (shared, sender) = (shared.clone(), sender.clone());
+                std::thread::spawn(move || work(&shared, &sender))
             })
             .collect();
         Self { shared, results, threads }
     }
 
-    /// Asks for jobs, each with its distance from the eye in metres.
-    pub fn request(&self, jobs: impl IntoIterator<Item = (f64, Job)>) {
+    /// Asks for jobs on a landscape, each with its distance from the eye in metres; what is made comes back with the number.
+    pub fn request(&self, number: u64, landscape: &Arc<Landscape>, jobs: impl IntoIterator<Item = (f64, Job)>) {
         let mut queue = self.shared.queue.lock().unwrap_or_else(PoisonError::into_inner);
         let before = queue.jobs.len();
-        queue.jobs.extend(jobs);
+        queue.jobs.extend(jobs.into_iter().map(|(distance_m, job)| Asked {
+            distance_m,
+            job,
+            number,
+            landscape: landscape.clone(),
+        }));
         if queue.jobs.len() > before {
             queue.sorted = false;
             self.shared.wake.notify_all();
         }
     }
 
-    /// Withdraws the waiting jobs that are no longer wanted; says which.
-    pub fn withdraw(&self, mut unwanted: impl FnMut(&Job) -> bool) -> Vec<Job> {
+    /// Withdraws the waiting jobs that are no longer wanted; says which, with their numbers.
+    pub fn withdraw(&self, mut unwanted: impl FnMut(u64, &Job) -> bool) -> Vec<(u64, Job)> {
         let mut queue = self.shared.queue.lock().unwrap_or_else(PoisonError::into_inner);
         let mut gone = Vec::new();
-        queue.jobs.retain(|(_, job)| {
-            let leave = unwanted(job);
+        queue.jobs.retain(|asked| {
+            let leave = unwanted(asked.number, &asked.job);
             if leave {
-                gone.push(*job);
+                gone.push((asked.number, asked.job));
             }
             !leave
         });
@@ -126,12 +138,12 @@ impl Builder {
     }
 
     /// The next thing made, if one is ready.
-    pub fn try_take(&self) -> Option<Built> {
+    pub fn try_take(&self) -> Option<(u64, Built)> {
         self.results.try_recv().ok()
     }
 
     /// The next thing made; waits for it. `None` if a thread has ended, which only a fault in making things can do.
-    pub fn wait(&self) -> Option<Built> {
+    pub fn wait(&self) -> Option<(u64, Built)> {
         loop {
             match self.results.recv_timeout(Duration::from_millis(200)) {
                 Ok(built) => return Some(built),
@@ -165,31 +177,31 @@ impl Drop for Builder {
     }
 }
 
-fn work(landscape: &Landscape, shared: &Shared, results: &mpsc::Sender<Built>) {
+fn work(shared: &Shared, results: &mpsc::Sender<(u64, Built)>) {
     loop {
-        let job = {
+        let asked = {
             let mut queue = shared.queue.lock().unwrap_or_else(PoisonError::into_inner);
             loop {
                 if queue.closed {
                     return;
                 }
                 if !queue.sorted {
-                    queue.jobs.sort_by(|a, b| b.0.total_cmp(&a.0));
+                    queue.jobs.sort_by(|a, b| b.distance_m.total_cmp(&a.distance_m));
                     queue.sorted = true;
                 }
                 match queue.jobs.pop() {
-                    Some((_, job)) => break job,
+                    Some(asked) => break asked,
                     None => queue = shared.wake.wait(queue).unwrap_or_else(PoisonError::into_inner),
                 }
             }
         };
         let start = Instant::now();
-        let built = make(landscape, job);
+        let built = make(&asked.landscape, asked.job);
         let ns = start.elapsed().as_nanos() as u64;
         shared.spent_ns.fetch_add(ns, Ordering::Relaxed);
         shared.worst_ns.fetch_max(ns, Ordering::Relaxed);
         shared.made.fetch_add(1, Ordering::Relaxed);
-        if results.send(built).is_err() {
+        if results.send((asked.number, built)).is_err() {
             return;
         }
     }

@@ -2,7 +2,8 @@
 //!
 //! 64 x 64 RGBA8: red, green, blue are the square roots of the linear albedo, so the dark colours of forest and water
 //! keep their steps; alpha is 0..255 for a shore distance of +-[`SHORE_RAMP_M`], over 127 in water, so that a shader finds
-//! a smooth shore line between texels. Texels 0 and 63 lie on the block's borders and are computed from the same posts
+//! a smooth shore line between texels; within [`LAND_COLOURED_TEXELS`] of the shore water has the land's colour, and
+//! shaders their own. Texels 0 and 63 lie on the block's borders and are computed from the same posts
 //! and the same noise by both neighbours: no seam.
 //!
 //! Colours follow [`crate::features::cover_rules`].
@@ -30,6 +31,14 @@ pub const MAP_BYTES: usize = (SIDE * SIDE * 4) as usize;
 /// Shore distance at which alpha saturates, metres, at a post step of 200 m; scales with the step.
 pub const SHORE_RAMP_M: f64 = 400.0;
 
+/// How far from its outline a texel in water has the land's colour, texels: a place just outside is mixed from texels up to
+/// 1.41 away, and hardly from those beyond this.
+const LAND_COLOURED_TEXELS: f64 = 1.2;
+
+/// How much farther from the shore a texel within an outline is taken to be where it is sea by rule as well, texels: more than
+/// the above, so that the line along which a sea is closed is not seen.
+const JOINED_TEXELS: f64 = 1.3;
+
 /// What lies on the ground beside its water, as far as the ground map shows it.
 pub struct Dress<'a> {
     /// What covers it.
@@ -41,13 +50,15 @@ pub struct Dress<'a> {
 }
 
 /// The ground map of a block. `shore_m` is the signed distance to the nearest water's edge at a world point (x, z),
-/// negative in water, infinite where there is none.
+/// negative in water, infinite where there is none; `sea_known` says whether a coastline decides there what is sea, and no
+/// rule.
 pub fn ground_map(
     field: &Field,
     block: BlockIndex,
     climate: &Climate,
     dress: &Dress,
     shore_m: &dyn Fn(f64, f64) -> f64,
+    sea_known: &dyn Fn(f64, f64) -> bool,
 ) -> Box<[u8]> {
     let grid = field.grid();
     let texel_m = grid.block_m() / f64::from(SIDE - 1);
@@ -67,15 +78,22 @@ pub fn ground_map(
                 grid.west_m + (first_column as f64 + u) * grid.step_m,
                 grid.north_m + (first_row as f64 + v) * grid.step_m,
             );
-            let shore = shore_m(x_m, z_m).min(sea_m(field, first_column, first_row, u, v));
-            let mut albedo = albedo(site, climate, x_m, z_m, shore as f32);
-            if shore >= 0.0 {
+            let outline = shore_m(x_m, z_m);
+            let by_rule = !sea_known(x_m, z_m);
+            let sea = if by_rule { sea_m(field, first_column, first_row, u, v) } else { f64::INFINITY };
+            // Where the sea by rule meets that within an outline, the outline is no shore.
+            let shore =
+                if outline < 0.0 { sea.max(outline - JOINED_TEXELS * texel_m).min(outline) } else { outline.min(sea) };
+            // Texels in water whose colour reaches over the outline have the land's: the water's own is drawn to the metre.
+            let land = shore >= -LAND_COLOURED_TEXELS * texel_m;
+            let mut albedo = albedo(site, climate, x_m, z_m, if land { shore.max(0.0) } else { shore } as f32);
+            if land {
                 if let Some(imagery) = dress.imagery {
                     let factors = imagery.factors(grid, x_m, z_m);
                     albedo = std::array::from_fn(|c| albedo[c] * factors[c]);
                 }
                 if covered {
-                    albedo = with_features(albedo, dress.cover, x_m, z_m, texel_m, shore);
+                    albedo = with_features(albedo, dress.cover, x_m, z_m, texel_m, shore.max(0.0));
                 }
                 for (kind, shares) in coverage.iter().filter(|(_, shares)| !shares.is_empty()) {
                     albedo = mix(albedo, strip_colour(*kind), shares[(row * SIDE + column) as usize]);
@@ -302,7 +320,7 @@ mod tests {
         let features = Features { areas, ..Features::default() };
         let cover = bake_cover(&field, &Lakes::default(), &features, &climate);
         let dress = Dress { cover: &cover, strips: &[], imagery: None };
-        let map = ground_map(&field, BlockIndex { x: 1, z: 0 }, &climate, &dress, &|_, _| f64::INFINITY);
+        let map = ground_map(&field, BlockIndex { x: 1, z: 0 }, &climate, &dress, &|_, _| f64::INFINITY, &|_, _| false);
         let green = |column: usize, row: usize| map[(row * SIDE as usize + column) * 4 + 1];
         let mut between = 0;
         for row in 2..62 {
@@ -330,6 +348,7 @@ mod tests {
                 &climate,
                 &Dress { cover: &cover, strips: strips.of(block), imagery: None },
                 &lake,
+                &|_, _| false,
             )
         };
         let (nw, ne, sw) = (map(0, 0), map(1, 0), map(0, 1));

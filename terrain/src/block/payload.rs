@@ -8,6 +8,7 @@ use super::light;
 use super::mask::{BlockPosts, Mask, block_posts};
 use super::mesh::{self, Indices, TILE};
 use super::rings::{FAR_RINGS, RingMasks};
+use crate::edit::{Changed, Edit, EditError};
 use crate::features::by_block::StripsByBlock;
 use crate::features::cover::Cover;
 use crate::features::imagery::Imagery;
@@ -24,7 +25,7 @@ use std::sync::Arc;
 const SHORE_REACH_M: f64 = 6_000.0;
 
 /// All that payloads are made from.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Landscape {
     /// The ground.
     pub ground: Ground,
@@ -33,7 +34,7 @@ pub struct Landscape {
     /// What else lies on the ground.
     pub features: Arc<Features>,
     /// Its roads, running water and runways by block: [`StripsByBlock::new`] of the features.
-    pub strips: StripsByBlock,
+    pub strips: Arc<StripsByBlock>,
     /// What covers it.
     pub cover: Arc<Cover>,
     /// What photographs say of it.
@@ -60,7 +61,7 @@ pub enum Mesh {
 pub struct Payload {
     /// Which block.
     pub block: BlockIndex,
-    /// Counts the versions of a block's payload, from 0.
+    /// Version of the ground that it was made from.
     pub version: u32,
     /// Post heights of the block with an apron towards south and east, `TILE` x `TILE`, row by row; NaN is void.
     pub heights_m: Box<[f32]>,
@@ -132,12 +133,23 @@ impl Landscape {
             masks: RingMasks::new(&field, limits_m),
             lakes: Arc::default(),
             features: Arc::default(),
-            strips: StripsByBlock::default(),
+            strips: Arc::default(),
             imagery: None,
             cover: Arc::new(Cover::unknown(field.grid())),
             climate,
             ground: Ground::new(field),
         }
+    }
+
+    /// The landscape over the next version of its ground, and what changed. What lies on the ground (water, cover,
+    /// photographs) stays as it was baked.
+    ///
+    /// # Errors
+    /// [`EditError`] says which edit cannot be made; none is then.
+    pub fn edited(&self, edits: &[Edit]) -> Result<(Self, Changed), EditError> {
+        let (ground, changed) = self.ground.edited(edits)?;
+        let masks = self.masks.edited(ground.field(), &changed);
+        Ok((Self { ground, masks, ..self.clone() }, changed))
     }
 
     /// The mesh of a block for a ring.
@@ -173,10 +185,11 @@ impl Landscape {
         let shore_m = |x_m: f64, z_m: f64| water.signed_distance_m(DVec2::new(x_m, z_m));
         let dress =
             ground_map::Dress { cover: &self.cover, strips: self.strips.of(block), imagery: self.imagery.as_deref() };
-        let ground_map = ground_map::ground_map(field, block, &self.climate, &dress, &shore_m);
+        let sea_known = |x_m: f64, z_m: f64| water.knows_the_sea(DVec2::new(x_m, z_m));
+        let ground_map = ground_map::ground_map(field, block, &self.climate, &dress, &shore_m, &sea_known);
         Payload {
             block,
-            version: 0,
+            version: self.ground.version(),
             heights_m,
             light: light::light_map(field, self.ground.pyramid(), block, to_sun),
             light_sun: to_sun,
@@ -191,6 +204,12 @@ impl Landscape {
 }
 
 impl Payload {
+    /// Lowest ground of its tile, apron included, metres; infinite if all is void.
+    pub fn lowest_m(&self) -> f32 {
+        // min ignores NaN.
+        self.heights_m.iter().copied().fold(f32::INFINITY, f32::min)
+    }
+
     /// Bytes that go to the GPU, without indices.
     pub fn upload_bytes(&self) -> usize {
         size_of_val(&*self.heights_m) + self.light.len() + self.ground_map.len()

@@ -6,8 +6,10 @@
 //! radius lies in a level-0 block.
 
 use super::mask::{Mask, block_posts};
+use crate::edit::Changed;
 use crate::field::Field;
 use crate::grid::{BlockIndex, Grid};
+use crate::paged::Paged;
 use rayon::prelude::*;
 
 /// Pixels a radian on axis of the reference view: 1080 rows over 60 degrees.
@@ -58,7 +60,7 @@ pub struct RingMasks {
     /// The limits the masks keep, metres.
     pub limits_m: [f64; FAR_RINGS],
     /// A mask a block and ring, blocks as in [`Grid::block_number`].
-    pub masks: Vec<[Mask; FAR_RINGS]>,
+    pub masks: Paged<[Mask; FAR_RINGS]>,
 }
 
 impl RingMasks {
@@ -72,20 +74,30 @@ impl RingMasks {
                 limits_m.map(|limit_m| Mask::for_limit(&posts, limit_m))
             })
             .collect();
-        Self { limits_m, masks }
+        Self { limits_m, masks: Paged::new(masks) }
+    }
+
+    /// The masks of a field's next version: those of blocks with a changed post are made anew.
+    pub(crate) fn edited(&self, field: &Field, changed: &Changed) -> Self {
+        let grid = field.grid();
+        let made = changed.blocks(grid, Changed::reaches_surface).into_iter().filter_map(|block| {
+            let posts = block_posts(field, block);
+            Some((grid.block_number(block)?, self.limits_m.map(|limit_m| Mask::for_limit(&posts, limit_m))))
+        });
+        Self { limits_m: self.limits_m, masks: self.masks.with(made) }
     }
 
     /// The mask of a block in a ring; all fine in ring 0, and where there is no block.
     pub fn mask(&self, grid: &Grid, block: BlockIndex, ring: usize) -> Mask {
         match (ring.checked_sub(1), grid.block_number(block)) {
-            (Some(far), Some(number)) => self.masks[number][far.min(FAR_RINGS - 1)],
+            (Some(far), Some(number)) => self.masks.get(number)[far.min(FAR_RINGS - 1)],
             _ => Mask::all(),
         }
     }
 
     /// Size in bytes.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.masks.as_slice())
+        self.masks.bytes()
     }
 }
 

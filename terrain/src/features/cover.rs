@@ -131,10 +131,9 @@ impl Cover {
     /// What covers a plan point; [`CoverClass::Unknown`] outside and for NaN.
     pub fn class_at(&self, x_m: f64, z_m: f64) -> CoverClass {
         let (u, v) = self.place(x_m, z_m);
-        if u.is_nan() || v.is_nan() {
-            return CoverClass::Unknown;
-        }
-        CoverClass::of(self.cell(u.floor() as i64, v.floor() as i64))
+        // Towards zero is down where nothing is negative; `floor` would be a call.
+        let inside = u >= 0.0 && v >= 0.0 && u < f64::from(self.columns) && v < f64::from(self.rows);
+        if inside { CoverClass::of(self.cell(u as i64, v as i64)) } else { CoverClass::Unknown }
     }
 }
 

@@ -165,7 +165,9 @@ pub(crate) fn sea_m(field: &Field, first_column: i64, first_row: i64, u: f64, v:
     let north = wet(0, 0) + east * (wet(1, 0) - wet(0, 0));
     let below = wet(0, 1) + east * (wet(1, 1) - wet(0, 1));
     let part = north + south * (below - north);
-    if part > 0.0 { (0.75 - part) * 2.0 * step_m } else { f64::INFINITY }
+    // Steeper in water, so that a cell away from it is open water.
+    let per_part_m = if part > 0.75 { 8.0 } else { 2.0 } * step_m;
+    if part > 0.0 { (0.75 - part) * per_part_m } else { f64::INFINITY }
 }
 
 /// What the rules make of a place: shares of 0 to 1, each laid over those before it.

@@ -9,6 +9,7 @@
 use super::model::Features;
 use super::shape::{self, LocalBox, Stand};
 use super::solid::{BuildingSolid, FOOT_M};
+use crate::edit::Changed;
 use crate::ground::Area;
 use glam::{DVec2, DVec3};
 use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
@@ -131,43 +132,39 @@ fn tower_heading_rad(line: &[DVec2], point: usize) -> f64 {
 impl ObjectIndex {
     /// The index of a world's features over its ground.
     pub fn new(features: Arc<Features>, area: &Area) -> Self {
-        let mut all = Vec::with_capacity(features.buildings.len() + features.placed.len() + features.masts.len());
-        for (number, building) in (0..).zip(&features.buildings) {
-            let Some([base_m, highest_m]) = ground_m(&building.outline, area) else { continue };
-            let solid = BuildingSolid::new(building, [base_m, highest_m]);
-            if solid.outline.len() < 3 {
-                continue;
-            }
-            let around = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-            let (low, high) = solid.outline.iter().fold(around, |(low, high), at| (low.min(*at), high.max(*at)));
-            all.push(Object {
-                id: ObjectId::Building(number),
-                base_m,
-                highest_m,
-                low: DVec3::new(low.x, base_m - FOOT_M, low.y),
-                high: DVec3::new(high.x, solid.top_m(), high.y),
-            });
-        }
-        let mut add = |id, at: DVec2, grid_heading_rad: f64, boxes: &[LocalBox]| {
-            if let Some(base_m) = area.height_m(at.x, at.y) {
-                let stand = Stand { at_m: DVec3::new(at.x, base_m, at.y), grid_heading_rad };
-                all.push(Object::over(id, &stand, boxes));
-            }
-        };
-        for (number, placed) in (0..).zip(&features.placed) {
-            let heading_rad = f64::from(placed.grid_heading_rad);
-            add(ObjectId::Placed(number), placed.at, heading_rad, shape::placed(placed.class));
-        }
-        for (number, mast) in (0..).zip(&features.masts) {
-            add(ObjectId::Mast(number), mast.at, 0.0, &shape::mast(mast.class, f64::from(mast.height_m)));
-        }
-        for (line, power) in (0..).zip(&features.power_lines) {
-            let tower = [shape::power_tower(f64::from(power.height_m))];
-            for (point, at) in (0..).zip(&power.line) {
-                add(ObjectId::PowerTower { line, point }, *at, tower_heading_rad(&power.line, point as usize), &tower);
-            }
-        }
+        let buildings = (0..).zip(&features.buildings).map(|(number, _)| ObjectId::Building(number));
+        let placed = (0..).zip(&features.placed).map(|(number, _)| ObjectId::Placed(number));
+        let masts = (0..).zip(&features.masts).map(|(number, _)| ObjectId::Mast(number));
+        let towers = (0..).zip(&features.power_lines).flat_map(|(line, power)| {
+            (0..).zip(&power.line).map(move |(point, _)| ObjectId::PowerTower { line, point })
+        });
+        let ids = buildings.chain(placed).chain(masts).chain(towers);
+        let all = ids.filter_map(|id| standing(&features, id, area)).collect();
         Self { features, tree: RTree::bulk_load(all) }
+    }
+
+    /// The index over a new version of the ground, and where in plan (x, z) the things lie that stand anew. Cost: a copy of
+    /// the tree; where a void was filled, a new one.
+    pub fn edited(&self, area: &Area, changed: &Changed) -> (Self, Vec<DVec2>) {
+        if changed.fills_void() {
+            let all = Self::new(self.features.clone(), area);
+            let moved = all.iter().map(Object::plan_middle).collect();
+            return (all, moved);
+        }
+        let mut tree = self.tree.clone();
+        let mut moved = Vec::new();
+        for (low, high) in changed.plans(area.grid()) {
+            for object in self.in_rectangle(low, high) {
+                let now = standing(&self.features, object.id, area);
+                if now.as_ref() != Some(object) && tree.remove(object).is_some() {
+                    if let Some(now) = now {
+                        tree.insert(now);
+                    }
+                    moved.push(object.plan_middle());
+                }
+            }
+        }
+        (Self { features: self.features.clone(), tree }, moved)
     }
 
     /// How many things there are.
@@ -246,6 +243,43 @@ impl ObjectIndex {
             }
         };
         Some(ObjectHit { fraction, point: from.lerp(to, fraction), normal, which: object.id })
+    }
+}
+
+/// How a thing stands on the ground; `None` over void.
+fn standing(features: &Features, id: ObjectId, area: &Area) -> Option<Object> {
+    let over = |at: DVec2, grid_heading_rad: f64, boxes: &[LocalBox]| {
+        let base_m = area.height_m(at.x, at.y)?;
+        let stand = Stand { at_m: DVec3::new(at.x, base_m, at.y), grid_heading_rad };
+        Some(Object::over(id, &stand, boxes))
+    };
+    match id {
+        ObjectId::Building(number) => {
+            let building = features.buildings.get(number as usize)?;
+            let [base_m, highest_m] = ground_m(&building.outline, area)?;
+            let solid = BuildingSolid::new(building, [base_m, highest_m]);
+            if solid.outline.len() < 3 {
+                return None;
+            }
+            let around = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+            let (low, high) = solid.outline.iter().fold(around, |(low, high), at| (low.min(*at), high.max(*at)));
+            let (low, high) = (DVec3::new(low.x, base_m - FOOT_M, low.y), DVec3::new(high.x, solid.top_m(), high.y));
+            Some(Object { id, base_m, highest_m, low, high })
+        }
+        ObjectId::Placed(number) => {
+            let placed = features.placed.get(number as usize)?;
+            over(placed.at, f64::from(placed.grid_heading_rad), shape::placed(placed.class))
+        }
+        ObjectId::Mast(number) => {
+            let mast = features.masts.get(number as usize)?;
+            over(mast.at, 0.0, &shape::mast(mast.class, f64::from(mast.height_m)))
+        }
+        ObjectId::PowerTower { line, point } => {
+            let power = features.power_lines.get(line as usize)?;
+            let at = power.line.get(point as usize)?;
+            let heading_rad = tower_heading_rad(&power.line, point as usize);
+            over(*at, heading_rad, &[shape::power_tower(f64::from(power.height_m))])
+        }
     }
 }
 

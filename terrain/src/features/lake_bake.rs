@@ -1,8 +1,10 @@
 //! Lakes from a file into the ground, at bake.
 //!
 //! A lake's posts are set to its level ([`burn`]): elevation rasters show noise on water. Between the outline and
-//! [`TAPER_POSTS`] posts beyond it the ground is blended from the level to the raster in proportion to distance,
-//! because the noise does not end at the outline either; it is the one place where the bake departs from its source.
+//! [`TAPER_POSTS`] posts beyond it the ground is blended from the level to the raster by the square of the distance,
+//! because the noise does not end at the outline either; it is the one place where the bake departs from its source. The
+//! square keeps water level at a steep shore: where a cell's edge crosses the outline, the ground there rises above the
+//! level by at most 4 % of what the next post on land does in the raster (7 % along a diagonal), in proportion by 13 %.
 //! Without a level of its own a lake has the median of the posts inside.
 
 use super::lakes::{Lake, Lakes, LakesNear, bounds_m, crossing_x, edges};
@@ -74,7 +76,7 @@ fn set_post(near: &LakesNear, at: DVec2, height_m: &mut f32) {
     if let Some(level_m) = near.level_at(at) {
         *height_m = level_m as f32;
     } else if let Some((distance_m, level_m)) = near.shore_at(at) {
-        let share = distance_m / near.reach_m();
+        let share = (distance_m / near.reach_m()).powi(2);
         *height_m = (level_m + (f64::from(*height_m) - level_m) * share) as f32;
     }
 }
@@ -115,7 +117,7 @@ mod tests {
             let (column, row) = ((x - grid.west_m) / grid.step_m, (z - grid.north_m) / grid.step_m);
             heights[row as usize * grid.columns() as usize + column as usize]
         };
-        assert_eq!((at(-600.0, 0.0), at(-1_200.0, 0.0), at(-1_400.0, 0.0)), (100.0, 200.0, 300.0));
+        assert_eq!((at(-600.0, 0.0), at(-1_200.0, 0.0), at(-1_400.0, 0.0)), (100.0, 150.0, 300.0));
         assert!(heights[0].is_nan());
         // By the even-odd rule in the plain double loop.
         for (number, lake) in lakes.lakes().iter().enumerate() {

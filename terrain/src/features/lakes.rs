@@ -74,11 +74,14 @@ impl Lakes {
 
     /// What is needed to answer for points of a plan rectangle to distances of `reach_m`.
     pub fn near(&self, low: DVec2, high: DVec2, reach_m: f64) -> LakesNear {
-        let mut near = LakesNear { low, high, reach_m, shore: Vec::new(), crossing: Vec::new() };
+        let mut near = LakesNear { low, high, reach_m, shore: Vec::new(), crossing: Vec::new(), seas: Vec::new() };
         let reach = DVec2::splat(reach_m);
         for (lake, &(lake_low, lake_high)) in self.lakes.iter().zip(&self.bounds_m) {
             if lake_low.cmple(high + reach).all() && lake_high.cmpge(low - reach).all() {
                 near.take(lake);
+                if lake.level_m == 0.0 {
+                    near.seas.push((lake_low + SEA_RIM_M, lake_high - SEA_RIM_M));
+                }
             }
         }
         near
@@ -99,7 +102,12 @@ pub struct LakesNear {
     shore: Vec<Vec<(Edge, f64)>>,
     /// For each lake its level and, for each of [`STRIPS`] parts from north to south, what a ray eastward may cross.
     crossing: Vec<(f64, Vec<Vec<Edge>>)>,
+    /// Where a coastline says what is sea: the boxes of waters at 0 m, less [`SEA_RIM_M`].
+    seas: Vec<(DVec2, DVec2)>,
 }
+
+/// A sea is closed along a box in degrees, which is turned a little in the world's plane, metres.
+const SEA_RIM_M: f64 = 100.0;
 
 const BUCKETS: usize = 16;
 const STRIPS: usize = 64;
@@ -149,6 +157,11 @@ impl LakesNear {
     /// Whether no shore is within reach and the rectangle on no lake: every distance is then the reach.
     pub fn is_dry(&self) -> bool {
         self.shore.is_empty() && self.crossing.is_empty()
+    }
+
+    /// Whether a coastline says what is sea about a point.
+    pub fn knows_the_sea(&self, at: DVec2) -> bool {
+        self.seas.iter().any(|(low, high)| at.cmpge(*low).all() && at.cmple(*high).all())
     }
 
     /// Distance to the nearest shore within +-reach, metres, negative on a lake. Exact for points of the rectangle.

@@ -125,6 +125,9 @@ pub(super) fn read_checked(
     Ok(content)
 }
 
+/// A folder that a person may put into a world, and that stays when another world takes its place.
+const KEPT: &str = "models";
+
 /// Whether all that is at a path is a world: anything else would be lost when a new one takes its place.
 pub(super) fn may_be_replaced(path: &Path) -> Result<(), StoreError> {
     if path.symlink_metadata().is_err() {
@@ -137,7 +140,8 @@ pub(super) fn may_be_replaced(path: &Path) -> Result<(), StoreError> {
     }
     for entry in fs::read_dir(path).map_err(|e| StoreError::io(path, e))? {
         let name = entry.map_err(|e| StoreError::io(path, e))?.file_name();
-        if !super::FILES.iter().any(|file| name == **file) {
+        let known = super::FILES.iter().any(|file| name == **file) || (name == KEPT && path.join(KEPT).is_dir());
+        if !known {
             return Err(kept(format!("one with `{}` in it", name.to_string_lossy())));
         }
     }
@@ -183,7 +187,8 @@ fn write_files(folder: &Path, files: &[(&str, &[u8])], info: &str) -> Result<(),
     Ok(())
 }
 
-/// Puts the new folder in its place; the old one, if any, goes aside first and comes back if that fails.
+/// Puts the new folder in its place, with what of the old one is kept; the old one, if any, goes aside first and comes
+/// back if that fails.
 fn replace(new: &Path, path: &Path) -> Result<(), StoreError> {
     match fs::rename(new, path) {
         Ok(()) => return Ok(()),
@@ -193,7 +198,10 @@ fn replace(new: &Path, path: &Path) -> Result<(), StoreError> {
     }
     let old = beside(path, "old")?;
     fs::rename(path, &old).map_err(|e| StoreError::io(path, e))?;
-    if let Err(error) = fs::rename(new, path) {
+    let (own, moved) = (old.join(KEPT), new.join(KEPT));
+    let kept = if own.is_dir() { fs::rename(&own, &moved) } else { Ok(()) };
+    if let Err(error) = kept.and_then(|()| fs::rename(new, path)) {
+        let _ = fs::rename(&moved, &own);
         let _ = fs::rename(&old, path);
         return Err(StoreError::io(path, error));
     }

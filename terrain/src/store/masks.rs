@@ -5,6 +5,7 @@
 
 use crate::block::Mask;
 use crate::block::rings::{FAR_RINGS, RingMasks};
+use crate::paged::Paged;
 
 const HEAD: usize = 8 * FAR_RINGS;
 const ENTRY: usize = Mask::BYTES * FAR_RINGS;
@@ -13,7 +14,7 @@ const ENTRY: usize = Mask::BYTES * FAR_RINGS;
 pub fn to_bytes(masks: &RingMasks) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(HEAD + masks.masks.len() * ENTRY);
     masks.limits_m.iter().for_each(|limit_m| bytes.extend(limit_m.to_le_bytes()));
-    masks.masks.iter().flatten().for_each(|mask| bytes.extend(mask.to_bytes()));
+    masks.masks.all().iter().flatten().for_each(|mask| bytes.extend(mask.to_bytes()));
     bytes
 }
 
@@ -28,7 +29,7 @@ pub fn from_bytes(bytes: &[u8], blocks: usize) -> Option<RingMasks> {
         *limit_m = f64::from_le_bytes(*eight);
     }
     let all: Option<Vec<Mask>> = body.as_chunks::<{ Mask::BYTES }>().0.iter().map(Mask::from_bytes).collect();
-    let masks = all?.as_chunks::<FAR_RINGS>().0.to_vec();
+    let masks = Paged::new(all?.as_chunks::<FAR_RINGS>().0.to_vec());
     Some(RingMasks { limits_m, masks })
 }
 

@@ -26,6 +26,8 @@ def kinds(tags):
     landuse, natural = tags.get("landuse"), tags.get("natural")
     if landuse == "forest" or natural == "wood":
         yield "forests"
+    if natural == "coastline":
+        yield "coastlines"
     if natural == "water" or landuse in ("reservoir", "basin"):
         yield "lakes"
 

@@ -2,10 +2,12 @@
 
 use super::*;
 use terrain::block::ground_map::Climate;
-use terrain::features::cover::FROM_FEATURES;
+use terrain::features::cover::{CoverClass, FROM_FEATURES};
+use terrain::features::lakes::{Lake, Lakes};
+use terrain::features::model::{Building, BuildingClass, Features, Origin, Road, RoadClass};
 use terrain::{Grid, synthetic};
 
-/// Ridges of 12 x 12 km, forest below 2,600 m, scrub to 3,200 m.
+/// Ridges of 12 x 12 km, forest below 2,600 m, scrub to 3,200 m, a pond, a road and houses along it.
 pub fn nursery() -> Nursery {
     let grid = Grid::centred(200.0, 2, 2).unwrap();
     let field = Arc::new(synthetic::ridges(grid, 3));
@@ -26,10 +28,23 @@ pub fn nursery() -> Nursery {
     let cover = Cover::new(&grid, per_step, cells.collect()).unwrap();
     let mut landscape = Landscape::bare(field, [13.9, 27.8, 55.6], Climate::new(0.74, 1_500.0));
     landscape.cover = Arc::new(cover);
+    let pond = [(-900.0, 300.0), (-400.0, 500.0), (-500.0, 1_100.0)].map(|(x, z)| DVec2::new(x, z));
+    landscape.lakes = Arc::new(Lakes::new(vec![Lake { name: "pond".into(), level_m: 0.0, rings: vec![pond.into()] }]));
+    let line: Vec<DVec2> =
+        (0..12).map(|i| DVec2::new(f64::from(i) * 1_000.0 - 5_500.0, f64::from(i * i % 7) * 700.0 - 2_000.0)).collect();
+    let house = |at: &DVec2| Building {
+        class: BuildingClass::House,
+        outline: [(0.0, 0.0), (0.0, 90.0), (70.0, 90.0), (70.0, 0.0)].map(|(x, z)| *at + DVec2::new(x, z)).into(),
+        height_m: 8.0,
+        height_from: Origin::Assumed,
+    };
+    let buildings = line.iter().map(house).collect();
+    let road = Road { class: RoadClass::Primary, width_m: 9.0, paved: true, tunnel: false, bridge: false, line };
+    landscape.features = Arc::new(Features { roads: vec![road], buildings, ..Features::default() });
     Nursery::new(Arc::new(landscape), 0.74)
 }
 
-fn tiles(grid: &Grid, tier: &Tier) -> Vec<TileIndex> {
+pub fn tiles(grid: &Grid, tier: &Tier) -> Vec<TileIndex> {
     let side = ((grid.east_m() - grid.west_m) / tier.side_m).ceil() as i32;
     (0..side * side).map(|at| TileIndex { x: at % side, z: at / side }).collect()
 }

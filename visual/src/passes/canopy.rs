@@ -6,7 +6,8 @@
 //! Invariant: a tile's origin is subtracted from the eye in f64; what a world does not have makes no [`CanopyPass`].
 
 use super::TargetFormat;
-use super::plants::{filled, layout, uniform, write};
+use super::bindings::{layout, texture, uniform};
+use super::upload::{filled, mip};
 use crate::camera::View;
 use crate::gpu::Gpu;
 use crate::shaders;
@@ -14,6 +15,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::sync::Arc;
+use terrain::edit::Changed;
 use terrain::near::{Change, NearTiles, Settings, TileIndex};
 use vegetation::canopy::{self, Canopy};
 use vegetation::pictures;
@@ -125,14 +127,7 @@ impl CanopyPass {
             device,
             "crowns",
             &[
-                (
-                    wgpu::ShaderStages::FRAGMENT,
-                    wgpu::BindingType::Texture {
-                        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                        view_dimension: wgpu::TextureViewDimension::D2,
-                        multisampled: false,
-                    },
-                ),
+                (wgpu::ShaderStages::FRAGMENT, texture(wgpu::TextureViewDimension::D2)),
                 (wgpu::ShaderStages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
             ],
         );
@@ -163,6 +158,12 @@ impl CanopyPass {
         })
     }
 
+    /// Takes over a nursery on a new version of the ground.
+    pub fn set_nursery(&mut self, nursery: &Arc<Nursery>, changed: &Changed) {
+        let nursery = nursery.clone();
+        self.tiles.remake_where(changed, move |tile| canopy::canopy(&nursery, tile));
+    }
+
     /// Lets the tiles follow the eye.
     pub fn follow(&mut self, gpu: &Gpu, eye_m: DVec3, speed_mps: f64) {
         for change in self.tiles.update(DVec2::new(eye_m.x, eye_m.z), speed_mps) {
@@ -178,8 +179,7 @@ impl CanopyPass {
                         filled(gpu, "canopy", bytemuck::cast_slice(&canopy.indices), wgpu::BufferUsages::INDEX);
                     self.shown.insert(tile, Shown { canopy, vertices, indices });
                 }
-                Change::Arrived(..) => {}
-                Change::Left(tile) => {
+                Change::Arrived(tile, _) | Change::Left(tile) => {
                     self.shown.remove(&tile);
                 }
             }
@@ -275,8 +275,8 @@ fn crowns(gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    for (level, texels) in (0..).zip(&mips) {
-        write(&gpu.queue, &texture, level, 0, [side >> level; 2], texels);
+    for (level, texels) in (0..).zip(mips) {
+        mip(&gpu.queue, &texture, level, 0, [side >> level; 2], texels);
     }
     let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("crowns"),

@@ -18,7 +18,8 @@ pub const SIDE: u32 = 512;
 /// Contrast that a mip keeps of the one below it beyond plain averaging.
 const KEPT: f32 = 0.88;
 
-/// The texture and all its mips, each a square of four-byte texels. Made once a process.
+/// The texture and all its mips, each a square of four-byte texels. Made once a process: some 0.2 s of work, which a thread
+/// may do ahead.
 pub fn levels() -> &'static [Vec<u8>] {
     static LEVELS: OnceLock<Vec<Vec<u8>>> = OnceLock::new();
     LEVELS.get_or_init(|| mip_chain(SIDE))
@@ -125,15 +126,16 @@ fn cells(x: f32, y: f32, cells: usize, seed: u32) -> [f32; 2] {
         for dx in -1..=1 {
             let (column, row) = ((x0 + dx).rem_euclid(side), (y0 + dy).rem_euclid(side));
             let place = (unit(column, row, seed), unit(column, row, seed ^ 0x55));
-            let distance = ((x0 + dx) as f32 + place.0 - x).hypot((y0 + dy) as f32 + place.1 - y);
-            if distance < found[0] {
-                found = [distance, found[0]];
-            } else if distance < found[1] {
-                found[1] = distance;
+            let (east, south) = ((x0 + dx) as f32 + place.0 - x, (y0 + dy) as f32 + place.1 - y);
+            let squared = east * east + south * south;
+            if squared < found[0] {
+                found = [squared, found[0]];
+            } else if squared < found[1] {
+                found[1] = squared;
             }
         }
     }
-    found
+    found.map(f32::sqrt)
 }
 
 #[cfg(test)]

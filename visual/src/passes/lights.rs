@@ -9,6 +9,7 @@
 
 use super::TargetFormat;
 use super::terrain::eye_uniforms;
+use super::upload::filled;
 use crate::camera::View;
 use crate::gpu::Gpu;
 use crate::shaders;
@@ -16,6 +17,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
+use terrain::edit::Changed;
 use terrain::features::cover::Cover;
 use terrain::features::light_point::{Beam, LightPoint, Lit};
 use terrain::features::model::Features;
@@ -190,6 +192,28 @@ struct Shown {
     range_m: [f32; 2],
 }
 
+/// Lights of airfields with their ranks, by tile.
+type ByTile = HashMap<(i32, i32), Vec<(LightPoint, f32)>>;
+
+fn airfields_maker(area: Area, lights: Arc<ByTile>) -> impl Fn(TileIndex) -> Made + Send + 'static {
+    move |tile| Made::new(&area, lights.get(&(tile.x, tile.z)).cloned().unwrap_or_default())
+}
+
+/// Lamps are placed by the tiles' own thread, once.
+fn towns_maker(
+    grid: Grid,
+    area: Area,
+    features: Arc<Features>,
+    cover: Arc<Cover>,
+) -> impl Fn(TileIndex) -> Made + Send + 'static {
+    let lamps = OnceLock::new();
+    move |tile| {
+        let corner = DVec2::new(grid.west_m, grid.north_m);
+        let lamps = lamps.get_or_init(|| Lamps::new(&features, &cover, corner, SIDE_M));
+        Made::new(&area, lamps.tile(tile.x, tile.z))
+    }
+}
+
 impl Tiles {
     fn new(grid: &Grid, reach_m: f64, wait: bool, make: impl Fn(TileIndex) -> Made + Send + 'static) -> Self {
         let settings = Settings { side_m: SIDE_M, reach_m, budget_bytes: BUDGET_BYTES, wait };
@@ -199,19 +223,13 @@ impl Tiles {
     fn follow(&mut self, gpu: &Gpu, eye: DVec2, speed_mps: f64) {
         for change in self.near.update(eye, speed_mps) {
             match change {
-                Change::Left(tile) => drop(self.shown.remove(&tile)),
                 Change::Arrived(tile, made) if !made.instances.is_empty() => {
-                    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                        label: Some("lights"),
-                        size: made.bytes() as u64,
-                        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-                        mapped_at_creation: false,
-                    });
-                    gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&made.instances));
+                    let bytes = bytemuck::cast_slice(&made.instances);
+                    let buffer = filled(gpu, "lights", bytes, wgpu::BufferUsages::VERTEX);
                     let count = made.instances.len() as u32;
                     self.shown.insert(tile, Shown { buffer, count, by_day: made.by_day, range_m: made.range_m });
                 }
-                Change::Arrived(..) => {}
+                Change::Arrived(tile, _) | Change::Left(tile) => drop(self.shown.remove(&tile)),
             }
         }
     }
@@ -242,6 +260,7 @@ pub struct Lights {
     reach: Reach,
     dark: Dark,
     airfields: Option<Tiles>,
+    airfield_lights: Arc<ByTile>,
     towns: Option<Tiles>,
     pipeline: wgpu::RenderPipeline,
     uniforms: wgpu::Buffer,
@@ -292,16 +311,16 @@ impl Lights {
         });
         let grid = *area.grid();
         let airfields = (!points.is_empty()).then(|| {
-            let area = area.clone();
-            let mut by_tile: HashMap<(i32, i32), Vec<(LightPoint, f32)>> = HashMap::new();
+            let mut by_tile = ByTile::new();
             for light in points {
                 let tile = (light.at - DVec2::new(grid.west_m, grid.north_m)) / SIDE_M;
                 by_tile.entry((tile.x.floor() as i32, tile.y.floor() as i32)).or_default().push((light, 0.0));
             }
-            Tiles::new(&grid, reach.airfields_m, reach.wait, move |tile| {
-                Made::new(&area, by_tile.get(&(tile.x, tile.z)).cloned().unwrap_or_default())
-            })
+            Arc::new(by_tile)
         });
+        let make = |lights: &Arc<ByTile>| airfields_maker(area.clone(), lights.clone());
+        let airfield_lights = airfields.clone();
+        let airfields = airfields.as_ref().map(|lights| Tiles::new(&grid, reach.airfields_m, reach.wait, make(lights)));
         Some(Self {
             pipeline: pipeline(device, frame, &layout, format),
             grid,
@@ -311,11 +330,24 @@ impl Lights {
             reach,
             dark: Dark::default(),
             airfields,
+            airfield_lights: airfield_lights.unwrap_or_default(),
             towns: None,
             uniforms,
             group,
             draws: Vec::new(),
         })
+    }
+
+    /// Takes over a new version of the ground.
+    pub fn set_area(&mut self, area: &Area, changed: &Changed) {
+        self.area = area.clone();
+        if let Some(tiles) = &mut self.airfields {
+            tiles.near.remake_where(changed, airfields_maker(area.clone(), self.airfield_lights.clone()));
+        }
+        if let Some(towns) = &mut self.towns {
+            let make = towns_maker(self.grid, area.clone(), self.features.clone(), self.cover.clone());
+            towns.near.remake_where(changed, make);
+        }
     }
 
     /// Streams the tiles about the eye; lamps of towns from the first dark on.
@@ -327,15 +359,8 @@ impl Lights {
         }
         if dark.towns && (!self.features.roads.is_empty() || !self.features.buildings.is_empty()) {
             let towns = self.towns.get_or_insert_with(|| {
-                let (grid, area) = (self.grid, self.area.clone());
-                let (features, cover) = (self.features.clone(), self.cover.clone());
-                // Placed by the tiles' own thread, once.
-                let lamps = OnceLock::new();
-                Tiles::new(&grid, self.reach.towns_m, self.reach.wait, move |tile| {
-                    let corner = DVec2::new(grid.west_m, grid.north_m);
-                    let lamps = lamps.get_or_init(|| Lamps::new(&features, &cover, corner, SIDE_M));
-                    Made::new(&area, lamps.tile(tile.x, tile.z))
-                })
+                let make = towns_maker(self.grid, self.area.clone(), self.features.clone(), self.cover.clone());
+                Tiles::new(&self.grid, self.reach.towns_m, self.reach.wait, make)
             });
             towns.follow(gpu, eye, speed_mps);
         }

@@ -5,6 +5,7 @@
 //! The letters are strokes too (see [`crate::glyphs`]), so text is as sharp as lines at any size.
 
 use super::TargetFormat;
+use super::upload::Growing;
 use crate::{glyphs, shaders};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec2;
@@ -89,7 +90,7 @@ pub struct LinesPass {
     pipeline: wgpu::RenderPipeline,
     target: wgpu::Buffer,
     group: wgpu::BindGroup,
-    segments: wgpu::Buffer,
+    segments: Growing,
     count: u32,
 }
 
@@ -158,7 +159,7 @@ impl LinesPass {
             layout: &layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: target.as_entire_binding() }],
         });
-        Self { pipeline, target, group, segments: segment_buffer(device, 1024), count: 0 }
+        Self { pipeline, target, group, segments: Growing::new("lines", wgpu::BufferUsages::VERTEX), count: 0 }
     }
 
     /// Uploads strokes for a target of a size; call before the render pass begins.
@@ -168,34 +169,19 @@ impl LinesPass {
         if segments.is_empty() {
             return;
         }
-        let bytes: &[u8] = bytemuck::cast_slice(&segments);
-        if self.segments.size() < bytes.len() as u64 {
-            self.segments = segment_buffer(device, segments.len().next_power_of_two());
-        }
-        queue.write_buffer(&self.segments, 0, bytes);
+        self.segments.write(device, queue, &[bytemuck::cast_slice(&segments)]);
         let uniforms = [target_px[0] as f32, target_px[1] as f32, 0.0, 0.0];
         queue.write_buffer(&self.target, 0, bytemuck::cast_slice(&uniforms));
     }
 
     /// One draw of all segments. Replaces group 0.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        if self.count == 0 {
-            return;
-        }
+        let Some(segments) = self.segments.buffer().filter(|_| self.count > 0) else { return };
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
-        pass.set_vertex_buffer(0, self.segments.slice(..));
+        pass.set_vertex_buffer(0, segments.slice(..));
         pass.draw(0..4, 0..self.count);
     }
-}
-
-fn segment_buffer(device: &wgpu::Device, count: usize) -> wgpu::Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("lines"),
-        size: (count * size_of::<Segment>()) as u64,
-        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
 }
 
 /// All halos, then all lines.

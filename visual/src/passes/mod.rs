@@ -1,5 +1,6 @@
 //! One file a pass, named as its shader. A pass owns its pipeline and buffers and has a plain `draw`.
 
+mod bindings;
 pub mod canopy;
 pub mod detail;
 pub mod heights;
@@ -10,10 +11,12 @@ pub mod objects;
 pub mod overlay;
 pub mod particles;
 pub mod plants;
+pub mod plants_kinds;
 pub mod plants_seen;
 pub mod sky;
 pub mod terrain;
 pub mod terrain_textures;
+mod upload;
 pub mod upscale;
 
 /// What a pipeline must know of the target that it draws to.

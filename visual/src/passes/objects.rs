@@ -13,6 +13,7 @@
 use super::TargetFormat;
 use super::object_tiles::{self, Tile};
 use super::terrain::eye_uniforms;
+use super::upload::{Growing, filled};
 use crate::camera::{DEPTH_COMPARE, Frustum, View};
 use crate::gpu::Gpu;
 use crate::models::things::{MODELS, Model};
@@ -20,7 +21,7 @@ use crate::models::{Mesh, Vertex, glb};
 use crate::shaders;
 use bytemuck::{Pod, Zeroable};
 use glam::{DQuat, DVec2, DVec3, Vec3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use terrain::Grid;
 use terrain::features::index::ObjectIndex;
@@ -107,14 +108,12 @@ struct Resident {
 }
 
 /// What one view draws.
-#[derive(Default)]
 struct Prepared {
     /// Tile, indices, number of its instance.
     tiles: Vec<(TileIndex, u32, u32)>,
     /// Model, level, instances.
     things: Vec<(usize, usize, std::ops::Range<u32>)>,
-    instances: Option<wgpu::Buffer>,
-    capacity: usize,
+    instances: Growing,
 }
 
 /// See the module.
@@ -203,8 +202,11 @@ impl Objects {
         let Some(tiles) = &mut self.tiles else { return };
         for change in tiles.update(DVec2::new(eye_m.x, eye_m.z), speed_mps) {
             match change {
-                Change::Arrived(at, tile) if tile.is_empty() => drop(self.resident.remove(&at)),
                 Change::Arrived(at, tile) => {
+                    self.forget(at);
+                    if tile.is_empty() {
+                        continue;
+                    }
                     let buffers = (!tile.mesh.indices.is_empty()).then(|| {
                         let vertices = bytemuck::cast_slice(&tile.mesh.vertices);
                         let indices = bytemuck::cast_slice(&tile.mesh.indices);
@@ -216,19 +218,36 @@ impl Objects {
                     self.gpu_bytes += tile.bytes();
                     self.resident.insert(at, Resident { tile, buffers });
                 }
-                Change::Left(at) => {
-                    if let Some(gone) = self.resident.remove(&at) {
-                        self.gpu_bytes = self.gpu_bytes.saturating_sub(gone.tile.bytes());
-                    }
-                }
+                Change::Left(at) => self.forget(at),
             }
         }
+    }
+
+    fn forget(&mut self, at: TileIndex) {
+        if let Some(gone) = self.resident.remove(&at) {
+            self.gpu_bytes = self.gpu_bytes.saturating_sub(gone.tile.bytes());
+        }
+    }
+
+    /// Takes over an index in which things stand anew; `moved` are their middles in plan (x, z).
+    pub fn set_index(&mut self, index: Arc<ObjectIndex>, moved: &[DVec2]) {
+        let Some(tiles) = &mut self.tiles else { return };
+        let grid = self.grid;
+        let corner = DVec2::new(grid.west_m, grid.north_m);
+        let at: BTreeSet<TileIndex> = moved
+            .iter()
+            .map(|middle| ((middle - corner) / TILE_M).floor().as_ivec2())
+            .map(|tile| TileIndex { x: tile.x, z: tile.y })
+            .collect();
+        let make = move |tile| object_tiles::made(&index, &grid, tile, TILE_M);
+        tiles.remake(make, |tile| at.contains(&tile));
     }
 
     /// Culls for a view and uploads its instances.
     pub fn prepare(&mut self, gpu: &Gpu, view_index: usize, view: &View) {
         while self.views.len() <= view_index {
-            self.views.push(Prepared::default());
+            let instances = Growing::new("object instances", wgpu::BufferUsages::VERTEX);
+            self.views.push(Prepared { tiles: Vec::new(), things: Vec::new(), instances });
         }
         let frustum = view.frustum();
         let focal_px = view.focal_px();
@@ -291,21 +310,7 @@ impl Objects {
         }
         let prepared = &mut self.views[view_index];
         (prepared.tiles, prepared.things) = (tiles, ranges);
-        if instances.is_empty() {
-            return;
-        }
-        if prepared.capacity < instances.len() {
-            prepared.capacity = instances.len().next_power_of_two().max(64);
-            prepared.instances = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("object instances"),
-                size: (prepared.capacity * size_of::<Instance>()) as u64,
-                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }));
-        }
-        if let Some(buffer) = &prepared.instances {
-            gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&instances));
-        }
+        prepared.instances.write(&gpu.device, &gpu.queue, &[bytemuck::cast_slice(&instances)]);
     }
 
     /// Adds a thing to its list if it is in sight and large enough.
@@ -329,7 +334,7 @@ impl Objects {
     /// Records a prepared view's objects; group 0 must be bound, `window` is the ground's group 1.
     pub fn draw(&self, view_index: usize, window: &wgpu::BindGroup, pass: &mut wgpu::RenderPass<'_>) {
         let Some(prepared) = self.views.get(view_index) else { return };
-        let Some(instances) = &prepared.instances else { return };
+        let Some(instances) = prepared.instances.buffer() else { return };
         if prepared.tiles.is_empty() && prepared.things.is_empty() {
             return;
         }
@@ -368,17 +373,6 @@ fn nearest_m(eye_m: DVec3, low: DVec3, high: DVec3) -> f64 {
 fn sees(frustum: &Frustum, view: &View, low: DVec3, high: DVec3) -> bool {
     frustum
         .may_see_box((low - view.eye_m).as_vec3() - Vec3::splat(0.1), (high - view.eye_m).as_vec3() + Vec3::splat(0.1))
-}
-
-fn filled(gpu: &Gpu, label: &str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size: bytes.len() as u64,
-        usage: usage | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    gpu.queue.write_buffer(&buffer, 0, bytes);
-    buffer
 }
 
 /// All shapes in one pair of buffers.

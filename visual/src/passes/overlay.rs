@@ -1,4 +1,4 @@
-//! Draws what is draped on the near ground: roads, water, airfields. Shader: `shaders/overlay.wgsl`.
+//! Draws what is draped on the near ground: water, roads, airfields. Shader: `shaders/overlay.wgsl`.
 //!
 //! Each block's triangles are made off the render thread ([`terrain::block::overlay`]) and drawn after the ground, blended
 //! over it, depth tested and not written. Only blocks that are drawn at level 0 have any, so what is draped lies in the
@@ -8,6 +8,7 @@
 
 use super::TargetFormat;
 use super::terrain::Terrain;
+use super::upload::filled;
 use crate::camera::View;
 use crate::gpu::Gpu;
 use crate::shaders;
@@ -18,6 +19,7 @@ use std::sync::{Arc, OnceLock};
 use terrain::BlockIndex;
 use terrain::block::Landscape;
 use terrain::block::overlay::{self, Kind, Overlay, Overlays, Vertex};
+use terrain::edit::Changed;
 use terrain::near::{Change, NearTiles, Settings, TileIndex};
 
 /// Bytes uploaded in a frame; one block of a town is about a MiB.
@@ -31,6 +33,8 @@ pub const ROAD_M: f64 = 9.0;
 pub struct OverlaySettings {
     /// Plan distance within which a block's overlay is wanted, metres; at most the near radius is of use.
     pub reach_m: f64,
+    /// How many of the detail texture's scales the ground has; without any, water has no ripples.
+    pub detail: u32,
     /// Wait for every wanted block.
     pub wait: bool,
 }
@@ -39,7 +43,8 @@ pub struct OverlaySettings {
 pub struct OverlayPass {
     tiles: NearTiles<Overlay>,
     blocks: HashMap<BlockIndex, OnDevice>,
-    pipeline: wgpu::RenderPipeline,
+    /// For all but open water, and for that.
+    pipelines: [wgpu::RenderPipeline; 2],
     /// For each view: block, slot, and whether its roads are near enough.
     draws: Vec<Vec<(BlockIndex, u32, bool)>>,
     triangles: u64,
@@ -49,7 +54,9 @@ pub struct OverlayPass {
 struct OnDevice {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
-    /// Where roads begin and end in the list: water before, airfields after.
+    /// Where open water begins and ends in the list: running water before, roads after.
+    water: Range<u32>,
+    /// Where roads begin and end: airfields after.
     roads: Range<u32>,
     count: u32,
 }
@@ -64,29 +71,25 @@ impl OverlayPass {
         landscape: Arc<Landscape>,
         settings: OverlaySettings,
     ) -> Option<Self> {
-        if !overlay::any(&landscape.features) {
+        if !overlay::any(&landscape.features, &landscape.lakes) {
             return None;
         }
         let grid = *landscape.ground.field().grid();
+        let make = |fragment| pipeline(gpu, frame, terrain, format, fragment, settings.detail);
+        let pipelines = ["overlay_fragment", "open_water_fragment"].map(make);
         let settings = Settings {
             side_m: grid.block_m(),
             reach_m: settings.reach_m,
             budget_bytes: BUDGET_BYTES,
             wait: settings.wait,
         };
-        // Made ready by the thread that uses it.
-        let overlays = OnceLock::new();
-        let tiles = NearTiles::new(&grid, settings, Overlay::upload_bytes, move |tile: TileIndex| {
-            let overlays = overlays.get_or_init(|| Overlays::new(&landscape));
-            overlays.block(BlockIndex { x: tile.x, z: tile.z })
-        });
-        Some(Self {
-            tiles,
-            blocks: HashMap::new(),
-            pipeline: pipeline(gpu, frame, terrain, format),
-            draws: Vec::new(),
-            triangles: 0,
-        })
+        let tiles = NearTiles::new(&grid, settings, Overlay::upload_bytes, maker(landscape));
+        Some(Self { tiles, blocks: HashMap::new(), pipelines, draws: Vec::new(), triangles: 0 })
+    }
+
+    /// Takes over a new version of the ground.
+    pub fn set_landscape(&mut self, landscape: Arc<Landscape>, changed: &Changed) {
+        self.tiles.remake_where(changed, maker(landscape));
     }
 
     /// Blocks within reach that were not there after the last update.
@@ -109,8 +112,10 @@ impl OverlayPass {
         for change in self.tiles.update(DVec2::new(eye_m.x, eye_m.z), speed_mps) {
             match change {
                 Change::Arrived(tile, made) => {
-                    if let Some(there) = OnDevice::new(gpu, &made) {
-                        self.blocks.insert(BlockIndex { x: tile.x, z: tile.z }, there);
+                    let block = BlockIndex { x: tile.x, z: tile.z };
+                    match OnDevice::new(gpu, &made) {
+                        Some(there) => drop(self.blocks.insert(block, there)),
+                        None => drop(self.blocks.remove(&block)),
                     }
                 }
                 Change::Left(tile) => {
@@ -145,19 +150,35 @@ impl OverlayPass {
         if draws.is_empty() {
             return;
         }
-        pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, terrain.bindings().1, &[]);
-        for (block, slot, roads) in draws {
-            let Some(there) = self.blocks.get(block) else { continue };
-            pass.set_vertex_buffer(0, there.vertices.slice(..));
-            pass.set_index_buffer(there.indices.slice(..), wgpu::IndexFormat::Uint32);
-            for range in there.ranges(*roads) {
-                if !range.is_empty() {
-                    pass.draw_indexed(range, 0, *slot..*slot + 1);
+        for (stage, pipeline) in STAGES.into_iter().enumerate() {
+            let mut bound = false;
+            for (block, slot, roads) in draws {
+                let Some(there) = self.blocks.get(block) else { continue };
+                let range = there.ranges(*roads)[stage].clone();
+                if range.is_empty() {
+                    continue;
                 }
+                if !std::mem::replace(&mut bound, true) {
+                    pass.set_pipeline(&self.pipelines[pipeline]);
+                }
+                pass.set_vertex_buffer(0, there.vertices.slice(..));
+                pass.set_index_buffer(there.indices.slice(..), wgpu::IndexFormat::Uint32);
+                pass.draw_indexed(range, 0, *slot..*slot + 1);
             }
         }
     }
+
+    /// Whether water within its outlines is draped on a block.
+    pub fn has_water(&self, block: BlockIndex) -> bool {
+        self.blocks.get(&block).is_some_and(|there| !there.water.is_empty())
+    }
+}
+
+/// Makes a block's triangles; made ready by the thread that uses it.
+fn maker(landscape: Arc<Landscape>) -> impl Fn(TileIndex) -> Overlay + Send + 'static {
+    let overlays = OnceLock::new();
+    move |tile| overlays.get_or_init(|| Overlays::new(&landscape)).block(BlockIndex { x: tile.x, z: tile.z })
 }
 
 impl OnDevice {
@@ -165,16 +186,6 @@ impl OnDevice {
         if overlay.indices.is_empty() {
             return None;
         }
-        let buffer = |label, bytes: &[u8], usage| {
-            let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: bytes.len() as u64,
-                usage: usage | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
-            gpu.queue.write_buffer(&buffer, 0, bytes);
-            buffer
-        };
         let words: Vec<[u32; 5]> = overlay.vertices.iter().map(Vertex::words).collect();
         // Triangles come in the order of their kinds.
         let before = |kind: Kind| {
@@ -183,18 +194,23 @@ impl OnDevice {
             3 * first as u32
         };
         Some(Self {
+            water: before(Kind::WaterArea)..before(Kind::Path),
             roads: before(Kind::Path)..before(Kind::Apron),
             count: overlay.indices.len() as u32,
-            vertices: buffer("overlay vertices", bytemuck::cast_slice(&words), wgpu::BufferUsages::VERTEX),
-            indices: buffer("overlay indices", bytemuck::cast_slice(&overlay.indices), wgpu::BufferUsages::INDEX),
+            vertices: filled(gpu, "overlay vertices", bytemuck::cast_slice(&words), wgpu::BufferUsages::VERTEX),
+            indices: filled(gpu, "overlay indices", bytemuck::cast_slice(&overlay.indices), wgpu::BufferUsages::INDEX),
         })
     }
 
-    /// What is drawn of it, with or without its roads.
-    fn ranges(&self, roads: bool) -> [Range<u32>; 2] {
-        if roads { [0..self.count, 0..0] } else { [0..self.roads.start, self.roads.end..self.count] }
+    /// What is drawn of it, in the order of [`STAGES`], with or without its roads.
+    fn ranges(&self, roads: bool) -> [Range<u32>; 4] {
+        let end = if roads { self.roads.end } else { self.roads.start };
+        [0..self.water.start, self.water.clone(), self.roads.start..end, self.roads.end..self.count]
     }
 }
+
+/// Which pipeline draws each of a block's ranges.
+const STAGES: [usize; 4] = [0, 1, 0, 0];
 
 /// Of a vertex, by location.
 const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
@@ -205,6 +221,8 @@ fn pipeline(
     frame: &wgpu::BindGroupLayout,
     terrain: &wgpu::BindGroupLayout,
     format: TargetFormat,
+    fragment: &str,
+    detail: u32,
 ) -> wgpu::RenderPipeline {
     let device = &gpu.device;
     let module = shaders::module(device, "overlay.wgsl");
@@ -213,11 +231,11 @@ fn pipeline(
         bind_group_layouts: &[Some(frame), Some(terrain)],
         immediate_size: 0,
     });
-    let constants = [("TILE", f64::from(terrain::block::mesh::TILE))];
+    let constants = [("TILE", f64::from(terrain::block::mesh::TILE)), ("DETAIL", f64::from(detail.min(2)))];
     let options =
         wgpu::PipelineCompilationOptions { constants: &constants, ..wgpu::PipelineCompilationOptions::default() };
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("overlay"),
+        label: Some(fragment),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
             module: &module,
@@ -235,7 +253,7 @@ fn pipeline(
         multisample: format.multisample(),
         fragment: Some(wgpu::FragmentState {
             module: &module,
-            entry_point: Some("overlay_fragment"),
+            entry_point: Some(fragment),
             compilation_options: options,
             targets: &[Some(wgpu::ColorTargetState {
                 format: format.colour,

@@ -5,6 +5,7 @@
 //! worked out, uploaded or drawn.
 
 use super::TargetFormat;
+use super::upload::Growing;
 use crate::camera::{DEPTH_COMPARE, View};
 use crate::gpu::Gpu;
 use crate::particles::{Emitter, Sprite};
@@ -35,10 +36,8 @@ pub struct SpriteInstance {
     pub seed: u32,
 }
 
-#[derive(Default)]
 struct Prepared {
-    instances: Option<wgpu::Buffer>,
-    capacity: usize,
+    instances: Growing,
     count: u32,
 }
 
@@ -71,7 +70,7 @@ impl Particles {
     /// Works out and uploads a view's sprites at a moment.
     pub fn prepare(&mut self, gpu: &Gpu, view_index: usize, view: &View, time_s: f64) {
         while self.views.len() <= view_index {
-            self.views.push(Prepared::default());
+            self.views.push(Prepared { instances: Growing::new("sprites", wgpu::BufferUsages::VERTEX), count: 0 });
         }
         let prepared = &mut self.views[view_index];
         prepared.count = 0;
@@ -85,25 +84,14 @@ impl Particles {
         if self.pipeline.is_none() {
             self.pipeline = Some(pipeline(gpu, &self.frame, self.format));
         }
-        if prepared.capacity < instances.len() {
-            prepared.capacity = instances.len().next_power_of_two().max(256);
-            prepared.instances = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("sprites"),
-                size: (prepared.capacity * size_of::<SpriteInstance>()) as u64,
-                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }));
-        }
-        if let Some(buffer) = &prepared.instances {
-            gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&instances));
-            prepared.count = instances.len() as u32;
-        }
+        prepared.instances.write(&gpu.device, &gpu.queue, &[bytemuck::cast_slice(&instances)]);
+        prepared.count = instances.len() as u32;
     }
 
     /// Records a prepared view's sprites; group 0 must be bound.
     pub fn draw(&self, view_index: usize, pass: &mut wgpu::RenderPass<'_>) {
         let Some(prepared) = self.views.get(view_index).filter(|prepared| prepared.count > 0) else { return };
-        let (Some(pipeline), Some(instances)) = (&self.pipeline, &prepared.instances) else { return };
+        let (Some(pipeline), Some(instances)) = (&self.pipeline, prepared.instances.buffer()) else { return };
         pass.set_pipeline(pipeline);
         pass.set_vertex_buffer(0, instances.slice(..));
         pass.draw(0..4, 0..prepared.count);

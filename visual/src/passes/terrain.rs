@@ -16,8 +16,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
 use std::sync::Arc;
 use terrain::block::mesh::TILE;
-use terrain::block::payload::Mesh;
+use terrain::block::payload::{Landscape, Mesh};
 use terrain::block::window::{Draw, Level, MAX_BLOCKS, Upload, Window};
+use terrain::edit::Changed;
 use terrain::{BlockIndex, CELLS, Grid};
 
 /// Beyond this the detail texture's mips are as good as even: a pixel spans more than its longest feature.
@@ -64,6 +65,10 @@ pub struct BlockEntry {
     pub side: i32,
 }
 
+/// The ground map's alpha from which it shows water where outlines are draped: between texels its shore is off by up to
+/// 0.71 of one (0.085), which must stay within the outline.
+const DRAPED_SHORE: f64 = 0.62;
+
 /// What a view's ground is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DrawCounts {
@@ -90,7 +95,7 @@ pub struct Terrain {
     group: wgpu::BindGroup,
     format: TargetFormat,
     look: TerrainLook,
-    pipelines: [wgpu::RenderPipeline; 3],
+    pipelines: [wgpu::RenderPipeline; 4],
     /// For each view: near land, far land, then water, each nearest first.
     draws: Vec<Vec<Draw>>,
     counts: DrawCounts,
@@ -193,6 +198,11 @@ impl Terrain {
         self.look
     }
 
+    /// Takes over a new version of the ground; see [`Window::set_landscape`].
+    pub fn set_landscape(&mut self, landscape: Arc<Landscape>, changed: &Changed) {
+        self.window.set_landscape(landscape, changed);
+    }
+
     /// Lets the window follow the eye and the sun, and uploads what it asks for.
     pub fn follow(&mut self, gpu: &Gpu, eye_m: DVec3, speed_mps: f64, to_sun: DVec3) {
         self.window.set_sun(to_sun);
@@ -253,13 +263,15 @@ impl Terrain {
         self.textures.apply(&gpu.queue, &Upload::Indices { slot: draw.slot, indices });
     }
 
-    /// Records a prepared view's ground; group 0 must be bound.
-    pub fn draw(&self, view_index: usize, pass: &mut wgpu::RenderPass<'_>) {
+    /// Records a prepared view's ground; group 0 must be bound. `draped` says of a block whether water within its outlines
+    /// is draped on it.
+    pub fn draw(&self, view_index: usize, draped: &dyn Fn(BlockIndex) -> bool, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_bind_group(1, &self.group, &[]);
         pass.set_index_buffer(self.textures.indices.slice(..), wgpu::IndexFormat::Uint16);
         let mut bound = None;
         for draw in self.draws(view_index) {
             let kind = Self::kind(draw);
+            let kind = if kind == 2 && draw.ring == 0 && draped(draw.block) { 3 } else { kind };
             if bound != Some(kind) {
                 pass.set_pipeline(&self.pipelines[kind]);
                 bound = Some(kind);
@@ -385,14 +397,14 @@ fn bind(
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("terrain"), layout, entries: &entries })
 }
 
-/// The pipelines for near land, far land and blocks with water.
+/// The pipelines for near land, far land, blocks with water, and blocks on which water is draped as well.
 fn pipelines(
     gpu: &Gpu,
     frame: &wgpu::BindGroupLayout,
     window: &wgpu::BindGroupLayout,
     format: TargetFormat,
     look: TerrainLook,
-) -> [wgpu::RenderPipeline; 3] {
+) -> [wgpu::RenderPipeline; 4] {
     let device = &gpu.device;
     let module = shaders::module(device, "terrain.wgsl");
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -401,9 +413,13 @@ fn pipelines(
         immediate_size: 0,
     });
     let lines = look.wireframe && gpu.draws_edges();
-    let make = |vertex, fragment, detail: u32| {
-        let constants =
-            [("TILE", f64::from(TILE)), ("DETAIL", f64::from(detail)), ("OVERLAY", f64::from(u8::from(look.overlay)))];
+    let make = |vertex, fragment, detail: u32, shore: f64| {
+        let constants = [
+            ("TILE", f64::from(TILE)),
+            ("DETAIL", f64::from(detail)),
+            ("OVERLAY", f64::from(u8::from(look.overlay))),
+            ("SHORE", shore),
+        ];
         let options =
             wgpu::PipelineCompilationOptions { constants: &constants, ..wgpu::PipelineCompilationOptions::default() };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -434,9 +450,10 @@ fn pipelines(
     };
     let detail = look.detail.min(2);
     [
-        make("terrain_vertex", "terrain_fragment", detail),
-        make("terrain_vertex", "terrain_fragment", 0),
-        make("water_vertex", "water_fragment", detail),
+        make("terrain_vertex", "terrain_fragment", detail, 0.5),
+        make("terrain_vertex", "terrain_fragment", 0, 0.5),
+        make("water_vertex", "water_fragment", detail, 0.5),
+        make("water_vertex", "water_fragment", detail, DRAPED_SHORE),
     ]
 }
 

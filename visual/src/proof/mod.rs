@@ -87,7 +87,7 @@ impl Stage {
         let terrain = &self.terrain;
         self.renderer.render(&self.gpu, &frame, &[&self.target.view], |about, layer, pass| {
             if layer == crate::Layer::Solid {
-                terrain.draw(about.index, pass);
+                terrain.draw(about.index, &|_| false, pass);
             }
         })
     }

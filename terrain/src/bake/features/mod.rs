@@ -2,13 +2,14 @@
 //!
 //! Each format has its file and gives [`raw::RawFeature`]s; what a file is is told from its content. [`tags`] says what
 //! they mean, [`place`] lays them on a world's plane and keeps the books ([`kind::Counts`]): of every kind
-//! `read = kept + skipped`, with the reason for each. [`waters`] makes lakes of the water that is large enough for the
+//! `read = kept + skipped`, with the reason for each. [`coast`] joins coastlines to the sea, [`waters`] makes lakes of the water that is large enough for the
 //! posts, [`airfields`] joins airfields with their runways and sets them into the ground, [`downhill`] turns rivers the
 //! way the ground falls. Frame of what comes out: [`crate::frame`].
 
 mod aeroways;
 mod airfield_csv;
 mod airfields;
+mod coast;
 mod downhill;
 mod flatten;
 mod geojson;
@@ -89,7 +90,10 @@ pub fn read(bytes: &[u8], dbf: Option<&[u8]>, prj: Option<&str>) -> Result<Conte
 }
 
 fn read_plain(bytes: &[u8], dbf: Option<&[u8]>, prj: Option<&str>) -> Result<Content, Unreadable> {
-    let shapes = |features| Content { features, airfields: Vec::new() };
+    let shapes = |mut features: Vec<RawFeature>| {
+        coast::join(&mut features);
+        Content { features, airfields: Vec::new() }
+    };
     if osm_pbf::looks_like(bytes) {
         return osm_pbf::read(bytes)?.features().map(shapes);
     }

@@ -259,7 +259,8 @@ impl Placer<'_> {
             Some(_) => return Err("its level is no height".into()),
             None => None,
         };
-        let name = feature.tags.get("name").unwrap_or_default().to_owned();
+        let name = feature.tags.get("name").unwrap_or_default();
+        let name = if kind == Kind::Coastlines { "sea" } else { name }.to_owned();
         let rings = [polygon.outers, polygon.inners].concat();
         self.placed.waters.push(OpenWater { kind, name, level_m, still, rings });
         Ok(())

@@ -69,6 +69,10 @@ pub fn meanings(tags: &Tags, element: Element) -> Vec<(Kind, Result<Meaning, Ski
             let height_m = height_m(tags).unwrap_or(if tags.is("power", "line") { 30.0 } else { 9.0 });
             found.push((Kind::PowerLines, Ok(Meaning::PowerLine(height_m))));
         }
+        if element == Element::Way && tags.is("natural", "coastline") {
+            // What it encloses is known by `coast`.
+            found.push((Kind::Coastlines, Ok(Meaning::Water { still: true })));
+        }
         areas(tags, &mut found);
     }
     points(tags, node, &mut found);

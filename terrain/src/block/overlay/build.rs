@@ -2,12 +2,14 @@
 
 use super::clip::{CellSquare, Polygon};
 use super::lattice::{self, Lattice, Spot, UNITS};
+use super::region::{Region, Triangle};
 use super::source::{Item, Shape, Source, Sources, on_runway};
-use super::{ACROSS_PER_METRE, EXTENT_PER_METRE, Kind, Overlay, PLACE_BITS, Part, TURN_STEPS, Vertex};
+use super::{ACROSS_PER_METRE, EXTENT_PER_METRE, Kind, NO_SHORE_M, Overlay, PLACE_BITS, Part, TURN_STEPS, Vertex};
 use crate::block::payload::Landscape;
 use crate::field::Field;
 use crate::grid::{BlockIndex, CELLS};
 use glam::DVec2;
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -115,6 +117,11 @@ impl Drape<'_> {
                     self.polygon(*triangle, &frame);
                 }
             }
+            Shape::Water { parts } => {
+                for (block, region) in &parts[things] {
+                    self.water(source.kind, *block, region.clone());
+                }
+            }
             Shape::Marks { marks, start_m, along } => {
                 for (number, mark) in things.clone().zip(&marks[things]) {
                     let first = self.overlay.indices.len() as u32;
@@ -167,6 +174,54 @@ impl Drape<'_> {
             piece.fan(|a, b, c| overlay.indices.extend([a, b, c].map(|place| (first + place) as u32)));
         });
     }
+}
+
+impl Drape<'_> {
+    /// Water within an outline. Vertices are shared where they are equal: open water is most of a lake.
+    fn water(&mut self, kind: Kind, block: BlockIndex, region: Region) {
+        let Self { field, lattice, square, overlay } = self;
+        let mut known: HashMap<[u32; 5], u32> = HashMap::new();
+        region.cut(block, |column, row, north_west, piece| {
+            if overlay.vertices.len() > MOST_VERTICES || is_void(field, column, row, north_west) {
+                return;
+            }
+            piece.triangles(&mut |triangle| {
+                for (spot, shores_m) in triangle.corners.into_iter().zip(shores_m(lattice, &triangle)) {
+                    let (east, south) = (spot.u - square.column * UNITS, spot.v - square.row * UNITS);
+                    let vertex = Vertex {
+                        east: east as u32 | (kind as u32) << PLACE_BITS,
+                        south: south as u32,
+                        height_m: lattice::height_m(field, spot) as f32,
+                        along_m: shores_m[0] as f32,
+                        across: (shores_m[1] * ACROSS_PER_METRE).round() as u32,
+                    };
+                    let index = *known.entry(vertex.words()).or_insert_with(|| {
+                        overlay.vertices.push(vertex);
+                        overlay.vertices.len() as u32 - 1
+                    });
+                    overlay.indices.push(index);
+                }
+            });
+        });
+    }
+}
+
+/// Distances of a triangle's corners from its first two edges that are shores, so that between them the distance from the
+/// edge itself is found; an edge whose triangle has no width, or a third one, counts as none.
+fn shores_m(lattice: &Lattice, triangle: &Triangle) -> [[f64; 2]; 3] {
+    let mut found = [NO_SHORE_M; 3];
+    let corners = triangle.corners.map(|spot| lattice.between_m(triangle.corners[0], spot));
+    let shores = (0..3).filter(|edge| triangle.shore[*edge]);
+    for (number, edge) in shores.take(2).enumerate() {
+        let (a, b, c) = (corners[edge], corners[(edge + 1) % 3], corners[(edge + 2) % 3]);
+        let away_m = (b - a).perp_dot(c - a).abs() / (b - a).length();
+        if away_m > 0.0 {
+            found[edge][number] = 0.0;
+            found[(edge + 1) % 3][number] = 0.0;
+            found[(edge + 2) % 3][number] = away_m.min(NO_SHORE_M[number]);
+        }
+    }
+    found
 }
 
 /// Whether a triangle of the ground is not there.

@@ -1,4 +1,4 @@
-//! What is draped on the near ground: roads, railways, running water, aprons, taxiways, runways with their markings.
+//! What is draped on the near ground: lakes and other water, roads, railways, aprons, taxiways, runways with their markings.
 //!
 //! Everything is cut along the ground's level-0 triangles, so it lies in them and not near them. Frame of a vertex: lattice
 //! units ([`lattice`]) east and south of its block's north-west post, and metres above sea level.
@@ -13,11 +13,14 @@ mod glyphs;
 pub mod lattice;
 mod markings;
 mod polygon;
+pub mod region;
 pub mod ribbon;
 mod source;
 
 pub use build::Overlays;
 
+use crate::features::cover::CoverClass;
+use crate::features::lakes::Lakes;
 use crate::features::model::{Features, RoadClass};
 
 /// What a triangle is, and when it is drawn: kinds are painted in this order, later ones over earlier.
@@ -26,34 +29,39 @@ use crate::features::model::{Features, RoadClass};
 pub enum Kind {
     /// Running water.
     Water = 0,
+    /// A pond, or a river that is drawn by its banks: it covers the ground and leaves its shape. Of this kind and the next
+    /// [`Vertex::along_m`] and [`Vertex::across`] are distances from shores.
+    WaterArea = 1,
+    /// A lake or the sea, of one level.
+    StillWater = 2,
     /// A footpath.
-    Path = 1,
+    Path = 3,
     /// A track, gravel or earth.
-    Track = 2,
+    Track = 4,
     /// An unsealed road.
-    Gravel = 3,
+    Gravel = 5,
     /// A sealed road without markings.
-    Lane = 4,
+    Lane = 6,
     /// A sealed road with a line along its middle.
-    Road = 5,
+    Road = 7,
     /// A sealed road of two carriageways or as wide.
-    Motorway = 6,
+    Motorway = 8,
     /// A railway.
-    Railway = 7,
+    Railway = 9,
     /// An apron, of slabs.
-    Apron = 8,
+    Apron = 10,
     /// A taxiway with its yellow line.
-    Taxiway = 9,
+    Taxiway = 11,
     /// A runway of asphalt; along counts from the nearer threshold.
-    RunwayAsphalt = 10,
+    RunwayAsphalt = 12,
     /// Of concrete.
-    RunwayConcrete = 11,
+    RunwayConcrete = 13,
     /// Of gravel.
-    RunwayGravel = 12,
+    RunwayGravel = 14,
     /// Of grass.
-    RunwayGrass = 13,
+    RunwayGrass = 15,
     /// White paint; along and across count from the middle of the mark.
-    White = 14,
+    White = 16,
 }
 
 impl Kind {
@@ -77,6 +85,9 @@ pub const PLACE_BITS: u32 = 22;
 /// Units of [`Vertex::across`] along a metre.
 pub const ACROSS_PER_METRE: f64 = 256.0;
 
+/// Distance of a vertex whose triangle has no shore, metres; of the second shore the most that fits [`Vertex::across`].
+pub const NO_SHORE_M: [f64; 2] = [10_000.0, 127.0];
+
 /// Units of a mark's half length along a metre, in the high bits of [`Vertex::south`].
 pub const EXTENT_PER_METRE: f64 = 8.0;
 
@@ -94,10 +105,11 @@ pub struct Vertex {
     pub south: u32,
     /// Above sea level, metres.
     pub height_m: f32,
-    /// Along the feature, metres.
+    /// Along the feature, metres; of [`Kind::WaterArea`] and [`Kind::StillWater`] the distance from the triangle's edge that
+    /// is a shore, if it has one.
     pub along_m: f32,
     /// Across it from its middle, i16 in the low half, and half its width, u16 in the high half; 1 / [`ACROSS_PER_METRE`]
-    /// m. A half width of 0 has no edge to be smoothed.
+    /// m. A half width of 0 has no edge to be smoothed. Of water as above the distance from a second shore.
     pub across: u32,
 }
 
@@ -151,8 +163,10 @@ impl Overlay {
 }
 
 /// Whether a world has anything to drape.
-pub fn any(features: &Features) -> bool {
-    features.roads.iter().any(|road| !road.tunnel)
+pub fn any(features: &Features, lakes: &Lakes) -> bool {
+    !lakes.lakes().is_empty()
+        || features.areas.iter().any(|area| area.cover == CoverClass::Water)
+        || features.roads.iter().any(|road| !road.tunnel)
         || features.waterways.iter().any(|water| !water.tunnel)
         || features
             .airfields

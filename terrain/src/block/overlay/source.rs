@@ -5,13 +5,15 @@ use super::clip::Polygon;
 use super::lattice::{Lattice, Spot, UNITS};
 use super::markings::{self, Mark};
 use super::polygon;
+use super::region::Region;
 use super::ribbon::Ribbon;
+use crate::features::cover::CoverClass;
 use crate::features::lakes::Lakes;
 use crate::features::model::{Features, RunwaySurface, WaterwayClass};
 use crate::field::Field;
 use crate::grid::{BlockIndex, CELLS};
 use glam::DVec2;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Most spots of all ribbons: 16 bytes each. What comes beyond is not drawn.
 const MOST_SPOTS: usize = 1 << 26;
@@ -43,6 +45,11 @@ pub enum Shape {
         origin: Spot,
         /// Unit.
         along: DVec2,
+    },
+    /// Water within its outlines: what of it lies in which block.
+    Water {
+        /// A part for each block that it touches.
+        parts: Vec<(BlockIndex, Region)>,
     },
     /// Paint in the frame of a runway.
     Marks {
@@ -91,6 +98,7 @@ impl Sources {
                 sources.push(Source { kind, shape: Shape::Ribbon { ribbon, along_m } });
             }
         };
+        open_water(features, lakes, field, &mut sources);
         let mut waterways: Vec<_> = features.waterways.iter().filter(|water| !water.tunnel).collect();
         // Ditches below rivers.
         waterways.sort_by_key(|water| match water.class {
@@ -156,6 +164,38 @@ impl Sources {
     /// Blocks that have any, in no order.
     pub fn blocks(&self) -> impl Iterator<Item = BlockIndex> + '_ {
         self.blocks.keys().copied()
+    }
+}
+
+/// Lakes, the sea, ponds and rivers drawn by their banks.
+fn open_water(features: &Features, lakes: &Lakes, field: &Field, sources: &mut Vec<Source>) {
+    let grid = field.grid();
+    let lattice = Lattice::of(grid);
+    let lakes = lakes.lakes().iter().map(|lake| (Kind::StillWater, &lake.rings));
+    let areas = features.areas.iter().filter(|area| area.cover == CoverClass::Water);
+    let areas = areas.map(|area| (Kind::WaterArea, &area.rings));
+    let all: Vec<(Kind, Vec<Vec<Spot>>)> = areas
+        .chain(lakes)
+        .map(|(kind, rings)| {
+            let spots = |ring: &Vec<DVec2>| ring.iter().map(|at| lattice.spot(*at)).collect::<Option<Vec<Spot>>>();
+            (kind, rings.iter().filter_map(spots).collect())
+        })
+        .collect();
+    // A river is often drawn in parts: where two meet is no shore.
+    let (mut edges, mut joints) = (HashSet::new(), HashSet::new());
+    let key = |a: Spot, b: Spot| (a.min(b), a.max(b));
+    for ring in all.iter().flat_map(|(_, rings)| rings) {
+        for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+            if !edges.insert(key(*a, *b)) {
+                joints.insert(key(*a, *b));
+            }
+        }
+    }
+    for (kind, rings) in all {
+        let parts = Region::new(&rings, &|a, b| !joints.contains(&key(a, b))).by_block(grid);
+        if !parts.is_empty() {
+            sources.push(Source { kind, shape: Shape::Water { parts } });
+        }
     }
 }
 
@@ -231,6 +271,11 @@ fn index(lattice: &Lattice, field: &Field, source: u32, of: &Source, blocks: &mu
             for (at, triangle) in (0..).zip(triangles) {
                 let (low, high) = bounds(&mut triangle.corners());
                 touch(low, high, at);
+            }
+        }
+        Shape::Water { parts } => {
+            for (at, (block, _)) in (0..).zip(parts) {
+                blocks.entry(*block).or_default().push(Item { source, first: at, count: 1 });
             }
         }
         Shape::Marks { marks, start_m, along } => {

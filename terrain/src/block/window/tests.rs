@@ -3,7 +3,10 @@
 use super::*;
 use crate::block::ground_map::Climate;
 use crate::block::light;
-use crate::{Grid, synthetic};
+use crate::block::payload::tile_heights_m;
+use crate::edit::{Crater, Edit};
+use crate::{Corner, Field, Grid, synthetic};
+use rand::{RngExt, SeedableRng, rngs::StdRng};
 
 const BLOCKS: u32 = 12;
 
@@ -188,5 +191,146 @@ fn near_blocks_are_level_0() {
                 assert_eq!((draw.ring, draw.level), (0, Level::Zero));
             }
         }
+    }
+}
+
+/// A crater or some posts in the window's middle.
+fn edits(random: &mut StdRng, number: usize) -> Vec<Edit> {
+    let mut place = || random.random_range(-16_000.0..16_000.0_f64);
+    let mut all: Vec<Edit> = (0..number)
+        .map(|at| {
+            let mut centre_m = DVec2::new(place(), place());
+            if at % 2 == 1 {
+                // On a corner of four blocks.
+                centre_m = (centre_m / 6_000.0).round() * 6_000.0;
+            }
+            Edit::Crater(Crater { centre_m, radius_m: 250.0 + place().abs() / 10.0, depth_m: 150.0 })
+        })
+        .collect();
+    let corner = Corner { column: random.random_range(200..400), row: random.random_range(200..400) };
+    all.push(Edit::Posts(vec![(corner, random.random_range(0.0..4_000.0))]));
+    all
+}
+
+/// The same ground with all its posts from the start, and nothing shared.
+fn anew(landscape: &Landscape, rings: &Rings) -> Landscape {
+    let field = landscape.ground.field();
+    let field = Field::new(*field.grid(), field.heights_m().to_vec()).unwrap();
+    Landscape { lakes: landscape.lakes.clone(), ..Landscape::bare(Arc::new(field), rings.limits_m, landscape.climate) }
+}
+
+/// Every block is to the bit what a window over this ground from the start has.
+fn as_anew(gpu: &Gpu, window: &Window) {
+    let fresh = anew(window.landscape(), &window.settings().rings);
+    let (layer, to_sun) = window.light();
+    for draw in window.draws(|_, _, _| true) {
+        let (held, made) = (&gpu.blocks[&draw.slot], fresh.payload(draw.block, to_sun));
+        let bits = |heights: &[f32]| heights.iter().map(|h| h.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&held.heights_m), bits(&made.heights_m), "{:?}", draw.block);
+        assert_eq!(held.ground_map, made.ground_map, "{:?}", draw.block);
+        assert_eq!(gpu.lights[layer][&draw.slot][..], made.light[..], "{:?}", draw.block);
+        let shown = (draw.range, draw.has_water, draw.ground_triangles);
+        assert_eq!(shown, (made.range, made.has_water, made.ground_triangles));
+        match (draw.level, fresh.mesh(draw.block, draw.ring)) {
+            (Level::Zero, Mesh::Level0) | (Level::One, Mesh::Level1) => {}
+            (Level::Own { indices }, Mesh::Own(list)) => {
+                assert_eq!((indices as usize, &gpu.indices[&draw.slot]), (list.len(), &list));
+            }
+            other => panic!("{draw:?} has {other:?}"),
+        }
+    }
+}
+
+/// Every height that is drawn is one version's: no border is between two.
+fn one_version(gpu: &Gpu, window: &Window) {
+    let field = window.landscape().ground.field();
+    for draw in window.draws(|_, _, _| true) {
+        let now = tile_heights_m(field, draw.block);
+        let held = &gpu.blocks[&draw.slot].heights_m;
+        assert!(held.iter().zip(&now).all(|(a, b)| a.to_bits() == b.to_bits()), "{:?}", draw.block);
+    }
+}
+
+#[test]
+fn a_window_that_waits_shows_an_edit_in_its_next_update_as_one_made_over_it() {
+    let mut random = StdRng::seed_from_u64(4);
+    let mut window = window(true);
+    let mut gpu = Gpu::default();
+    gpu.apply(window.update(DVec2::new(-9_000.0, 0.0), 0.0));
+    let mut newest = window.landscape().clone();
+    for frame in 0..90 {
+        // Shifts, ring switches and relights go on meanwhile.
+        let turn = f64::from(frame) / 40.0;
+        window.set_sun(DVec3::new(turn.cos(), 0.2, turn.sin()).normalize());
+        let edited = frame % 3 == 0;
+        if edited {
+            let (landscape, changed) = newest.edited(&edits(&mut random, 1 + frame as usize % 2)).unwrap();
+            newest = Arc::new(landscape);
+            window.set_landscape(newest.clone(), &changed);
+        }
+        let eye = DVec2::new(-9_000.0 + 150.0 * f64::from(frame), 90.0 * f64::from(frame));
+        gpu.apply(window.update(eye, 300.0));
+        assert!(!window.is_changing() && Arc::ptr_eq(window.landscape(), &newest), "frame {frame}");
+        assert_eq!(window.late_blocks(), 0, "frame {frame}");
+        one_version(&gpu, &window);
+        if frame % 15 == 0 {
+            as_anew(&gpu, &window);
+        }
+    }
+    assert_eq!(window.counters().changes, 30);
+    assert!(window.counters().relights >= 3 && window.counters().shifts >= 2, "{:?}", window.counters());
+}
+
+#[test]
+fn edits_that_stream_in_are_shown_whole_or_not_at_all() {
+    let mut random = StdRng::seed_from_u64(5);
+    let mut window = window(false);
+    let mut gpu = Gpu::default();
+    gpu.apply(window.update(DVec2::ZERO, 0.0));
+    let mut newest = window.landscape().clone();
+    let mut before = 0;
+    for frame in 0..240 {
+        if frame < 120 && frame % 2 == 0 {
+            let (landscape, changed) = newest.edited(&edits(&mut random, 1)).unwrap();
+            newest = Arc::new(landscape);
+            window.set_landscape(newest.clone(), &changed);
+        }
+        gpu.apply(window.update(DVec2::new(40.0 * f64::from(frame), 0.0), 300.0));
+        one_version(&gpu, &window);
+        if window.counters().changes > before {
+            before = window.counters().changes;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    while window.is_changing() || window.late_blocks() > 0 {
+        gpu.apply(window.update(DVec2::new(9_560.0, 0.0), 300.0));
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    assert!(before >= 2 && Arc::ptr_eq(window.landscape(), &newest), "{before} versions were shown");
+    as_anew(&gpu, &window);
+}
+
+#[test]
+fn an_edit_before_the_first_picture_or_during_a_jump_is_no_other() {
+    let mut random = StdRng::seed_from_u64(6);
+    for wait in [true, false] {
+        let mut window = window(wait);
+        let mut gpu = Gpu::default();
+        let mut newest = window.landscape().clone();
+        for eye in [DVec2::ZERO, DVec2::splat(20_000.0), DVec2::splat(1e6), DVec2::splat(-9_000.0)] {
+            let (landscape, changed) = newest.edited(&edits(&mut random, 2)).unwrap();
+            newest = Arc::new(landscape);
+            window.set_landscape(newest.clone(), &changed);
+            for _ in 0..300 {
+                gpu.apply(window.update(eye, 0.0));
+                if window.late_blocks() == 0 && !window.is_changing() && !window.is_jumping() {
+                    break;
+                }
+                std::thread::sleep(std::time::Duration::from_millis(u64::from(!wait) * 2));
+            }
+            assert!(Arc::ptr_eq(window.landscape(), &newest));
+            one_version(&gpu, &window);
+        }
+        as_anew(&gpu, &window);
     }
 }

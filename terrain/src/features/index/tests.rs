@@ -1,6 +1,7 @@
 //! The index against every object one by one, and standing things against the ground query.
 
 use super::*;
+use crate::edit::{Crater, Edit};
 use crate::features::model::{Building, BuildingClass, Mast, MastClass, Origin, Placed, PlacedClass, PowerLine};
 use crate::grid::Grid;
 use crate::ground::Ground;
@@ -92,5 +93,29 @@ fn everything_stands_on_the_ground_query() {
         }
         let found = index.in_rectangle(object.plan_middle(), object.plan_middle()).any(|one| one.id == object.id);
         assert!(found, "{:?}", object.id);
+    }
+}
+
+#[test]
+fn an_edited_ground_has_things_stand_as_on_one_that_was_so_from_the_start() {
+    let mut random = SmallRng::seed_from_u64(12);
+    let (mut area, mut index) = town(&mut random);
+    for round in 0..12 {
+        let centre_m = DVec2::new(random.random_range(-900.0..900.0), random.random_range(-900.0..900.0));
+        let edit = Edit::Crater(Crater::simple(centre_m, random.random_range(200.0..400.0)));
+        let (after, changed) = area.edited(&[edit]).unwrap();
+        let (edited, moved) = index.edited(&after, &changed);
+        let fresh = ObjectIndex::new(index.features.clone(), &after);
+        let sorted = |index: &ObjectIndex| {
+            let mut all: Vec<Object> = index.iter().copied().collect();
+            all.sort_by_key(|object| object.id);
+            all
+        };
+        let (before, now) = (sorted(&index), sorted(&edited));
+        assert_eq!(now, sorted(&fresh), "round {round}");
+        let differ = before.iter().zip(&now).filter(|(a, b)| a != b).count();
+        assert_eq!((differ, before.len()), (moved.len(), now.len()));
+        assert!(round > 0 || differ > 10, "{differ}");
+        (area, index) = (after, edited);
     }
 }
