@@ -131,7 +131,7 @@ fn water_fragment(surface: WaterSurface) -> @location(0) vec4<f32> {
     let steep = half_way.y * half_way.y;
     let toward = 1.0 - max(dot(half_way, to_eye), 0.0);
     let mirror = 0.02 + 0.98 * (toward * toward) * (toward * toward) * toward;
-    let glitter = mirror * waves / (4.0 * max(to_eye.y, 0.12) * max(steep * steep, 0.05)) * light.b * step(0.0, frame.sun_direction.y);
+    let glitter = mirror * waves / (4.0 * max(to_eye.y, 0.12) * max(steep * steep, 0.05)) * key_seen(light) * step(0.0, frame.sun_direction.y);
     let water = ground * (1.0 - fresnel) + surface.mirrored * fresnel + frame.sun_irradiance * min(glitter, 3.0);
     let colour = overlaid(mix(ground, water, wet), surface.slot.z);
     return shown(colour, surface.haze, surface.clip.xy);

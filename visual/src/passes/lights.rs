@@ -13,9 +13,10 @@ use super::upload::filled;
 use crate::camera::View;
 use crate::gpu::Gpu;
 use crate::shaders;
+use crate::sky;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 use terrain::features::cover::Cover;
 use terrain::features::light_point::{Beam, LightPoint, Lit};
@@ -32,8 +33,6 @@ const BUDGET_BYTES: usize = 192 << 10;
 const THIN_FROM_M: f64 = 9_000.0;
 /// The least share of lamps that is left.
 const THINNEST: f64 = 1.0 / 12.0;
-/// Towns are lit below this elevation of the sun, radians: two degrees under the horizon.
-const TOWN_DARK_RAD: f64 = -2.0 * std::f64::consts::PI / 180.0;
 /// Airfields are, below this, radians, or where one sees less than [`AIRFIELD_DIM_M`].
 const AIRFIELD_DARK_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
 /// See [`AIRFIELD_DARK_RAD`]; metres.
@@ -55,7 +54,7 @@ pub struct Reach {
 pub struct Dark {
     /// All of an airfield's, not only those of its approach.
     pub airfields: bool,
-    /// Towns.
+    /// Some lamps of towns at least; the shader has the share of them.
     pub towns: bool,
     /// Share of their intensity that runway and approach lights are set to: all by day, 4 % in a clear night, more in
     /// poor visibility (stages after ICAO Annex 14, 5.3.1.10).
@@ -77,7 +76,7 @@ impl Dark {
         Self {
             directed: least.powf(night) as f32,
             airfields: sun_elevation_rad < AIRFIELD_DARK_RAD || visibility_m < AIRFIELD_DIM_M,
-            towns: sun_elevation_rad < TOWN_DARK_RAD,
+            towns: sky::lamps(sun_elevation_rad) > 0.0,
         }
     }
 }
@@ -135,6 +134,7 @@ impl LightInstance {
             Beam::Even => (0, light.half_rad[1], 0.0),
             Beam::TwoSided => (1, light.half_rad[1], 0.0),
             Beam::Slope { transition_rad } => (2, transition_rad, 0.0),
+            Beam::Beside => (4, light.half_rad[1], 0.0),
             Beam::Turning { period_s } => (3, light.half_rad[1], period_s),
         };
         let part = |share: f64| (share * 32_767.0).round() as i16;
@@ -181,7 +181,7 @@ impl Made {
 /// Tiles of one kind of lights and their buffers.
 struct Tiles {
     near: NearTiles<Made>,
-    shown: HashMap<TileIndex, Shown>,
+    shown: BTreeMap<TileIndex, Shown>,
 }
 
 struct Shown {
@@ -194,7 +194,7 @@ struct Shown {
 impl Tiles {
     fn new(grid: &Grid, reach_m: f64, wait: bool, make: impl Fn(TileIndex) -> Made + Send + 'static) -> Self {
         let settings = Settings { side_m: SIDE_M, reach_m, budget_bytes: BUDGET_BYTES, wait };
-        Self { near: NearTiles::new(grid, settings, Made::bytes, make), shown: HashMap::new() }
+        Self { near: NearTiles::new(grid, settings, Made::bytes, make), shown: BTreeMap::new() }
     }
 
     fn follow(&mut self, gpu: &Gpu, eye: DVec2, speed_mps: f64) {
@@ -289,7 +289,7 @@ impl Lights {
         let grid = *area.grid();
         let airfields = (!points.is_empty()).then(|| {
             let area = area.clone();
-            let mut by_tile: HashMap<(i32, i32), Vec<(LightPoint, f32)>> = HashMap::new();
+            let mut by_tile: BTreeMap<(i32, i32), Vec<(LightPoint, f32)>> = BTreeMap::new();
             for light in points {
                 let tile = (light.at - DVec2::new(grid.west_m, grid.north_m)) / SIDE_M;
                 by_tile.entry((tile.x.floor() as i32, tile.y.floor() as i32)).or_default().push((light, 0.0));
@@ -379,6 +379,12 @@ impl Lights {
             pass.set_vertex_buffer(0, buffer.slice(..));
             pass.draw(0..4, 0..*count);
         }
+    }
+
+    /// Bytes on the GPU.
+    pub fn gpu_bytes(&self) -> usize {
+        let tiles = self.airfields.iter().chain(&self.towns).flat_map(|tiles| tiles.shown.values());
+        tiles.map(|tile| tile.buffer.size() as usize).sum::<usize>() + self.uniforms.size() as usize
     }
 
     /// Lights that the last prepared views send, for reports.
