@@ -37,7 +37,9 @@ pub struct Taken {
 pub fn take(flown: Scenery, plan: &Plan, date: sim::UtcTime, folder: &Path) -> Result<Taken, Failure> {
     let bar = Progress::new("taking pictures");
     let own_models = flown.things.own_models().to_vec();
-    let Scenery { gpu, world, look, .. } = flown;
+    let (gpu, world, look) = (flown.gpu.clone(), flown.world.clone(), flown.look);
+    // All of it goes now; a scenery taken apart would keep what is not taken until the end.
+    drop(flown);
     let mut scenery = Scenery::new(gpu, capture::FORMAT, world.clone(), Look { wait: true, keep_depth: false, ..look });
     let gpu = scenery.gpu.clone();
     scenery.things.use_models(&gpu, own_models);
