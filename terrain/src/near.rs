@@ -202,7 +202,8 @@ impl<T: Send + 'static> NearTiles<T> {
     }
 
     fn take(&mut self, tile: TileIndex, made: T) {
-        if let Some(state) = self.state.get_mut(&tile) {
+        // One asked for twice, since the eye left and came back, is made twice and handed out once.
+        if let Some(state @ State::Asked) = self.state.get_mut(&tile) {
             *state = State::Ready(Arc::new(made));
         }
     }
@@ -310,5 +311,20 @@ mod tests {
         assert_eq!(tiles.late(), 0);
         assert!(arrived > 20);
         assert!(tiles.update(DVec2::NAN, f64::NAN).is_empty());
+    }
+    #[test]
+    fn a_tile_that_was_made_twice_arrives_once() {
+        let mut tiles = tiles(false, 1 << 20);
+        let tile = TileIndex { x: 3, z: 3 };
+        let mut arrived = |tiles: &mut NearTiles<TileIndex>| {
+            let mut changes = Vec::new();
+            tiles.take(tile, tile);
+            tiles.hand_out(DVec2::ZERO, &mut changes);
+            changes.len()
+        };
+        assert_eq!(arrived(&mut tiles), 0, "nobody asked");
+        tiles.state.insert(tile, State::Asked);
+        assert_eq!(arrived(&mut tiles), 1);
+        assert_eq!(arrived(&mut tiles), 0);
     }
 }
