@@ -316,7 +316,7 @@ mod tests {
     fn a_tile_that_was_made_twice_arrives_once() {
         let mut tiles = tiles(false, 1 << 20);
         let tile = TileIndex { x: 3, z: 3 };
-        let mut arrived = |tiles: &mut NearTiles<TileIndex>| {
+        let arrived = |tiles: &mut NearTiles<TileIndex>| {
             let mut changes = Vec::new();
             tiles.take(tile, tile);
             tiles.hand_out(DVec2::ZERO, &mut changes);

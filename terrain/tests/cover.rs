@@ -166,7 +166,7 @@ fn a_fine_photograph_replaces() {
     let grid = world.field.grid();
     let photo = terrain::bake::photo::open(&request.imagery[0]).unwrap();
     let inverse = photo.place.inverse();
-    let (mut seen, mut number, mut difference) = (0, 0, 0.0);
+    let (mut seen, mut number, mut difference) = (0_u32, 0_u32, 0.0);
     for block in grid.blocks() {
         let Some(texels) = imagery.texels(grid, block) else { continue };
         for (at, texel) in texels.chunks_exact(4).enumerate().filter(|(_, texel)| texel[3] == 255) {
@@ -179,7 +179,7 @@ fn a_fine_photograph_replaces() {
             // The square root of linear light is close to the sRGB code itself.
             difference += (f64::from(texel[1]) / 255.0 - green).abs();
             number += 1;
-            seen += usize::from(column < photo.place.columns);
+            seen += u32::from(column < photo.place.columns);
         }
     }
     assert_eq!(seen, number, "texels shown lie in the picture");
