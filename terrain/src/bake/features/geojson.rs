@@ -1,7 +1,7 @@
 //! GeoJSON (RFC 7946): geometries in longitude and latitude, properties as tags.
 //!
 //! Keys are those of OpenStreetMap, Natural Earth's `featurecla` or Geofabrik's `fclass`. A polygon that has no property
-//! but a name, a number and `level_m` is a lake.
+//! but a name, a number, a region and `level_m` is a lake.
 
 use super::MAX_POINTS;
 use super::raw::{Element, Polygon, RawFeature, Shape, Tags, is_place, ring_of, says_what};

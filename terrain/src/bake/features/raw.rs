@@ -47,8 +47,8 @@ const KEYS: [&str; 37] = [
     "tower:type",
 ];
 
-/// Keys that do not say what a thing is.
-const SAY_NOTHING: [&str; 7] = ["name", "level_m", "id", "fid", "osm_id", "objectid", "ogc_fid"];
+/// Keys that say which a thing is, or where, and not what.
+const SAY_NOTHING: [&str; 8] = ["name", "level_m", "id", "fid", "osm_id", "objectid", "ogc_fid", "region"];
 
 /// Longest value kept, bytes; a longer one is cut.
 const MAX_VALUE_BYTES: usize = 255;
