@@ -235,9 +235,12 @@ fn only_an_outline_that_says_nothing_is_a_lake() {
         );
         waters(&features::read(text.as_bytes(), None, None).unwrap().features).0
     };
-    for lake in
-        ["null", "{}", r#"{"name":"A","level_m":9,"fid":3,"region":"alps","OSM_ID":"7","boundary":null}"#, r#"{"natural":"water"}"#]
-    {
+    for lake in [
+        "null",
+        "{}",
+        r#"{"name":"A","level_m":9,"fid":3,"region":"alps","OSM_ID":"7","boundary":null}"#,
+        r#"{"natural":"water"}"#,
+    ] {
         assert_eq!(json(lake), 1, "{lake}");
     }
     for other in [
