@@ -86,6 +86,9 @@ enum Made<T> {
 /// Makes what a tile holds.
 type Make<T> = Box<dyn Fn(TileIndex) -> T + Send>;
 
+/// A tile to make, and by what from now on if that has changed.
+type Job<T> = (TileIndex, Option<(u64, Make<T>)>);
+
 struct Shared<T> {
     queue: Mutex<Queue<T>>,
     wake: Condvar,
@@ -289,7 +292,7 @@ impl<T: Send + 'static> NearTiles<T> {
 
 impl<T> Shared<T> {
     /// The next tile to make, and by what if that has changed.
-    fn next(&self) -> Option<(TileIndex, Option<(u64, Make<T>)>)> {
+    fn next(&self) -> Option<Job<T>> {
         let mut queue = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
         loop {
             if queue.closed {
@@ -414,18 +417,19 @@ mod tests {
         assert!(arrived > 20);
         assert!(tiles.update(DVec2::NAN, f64::NAN).is_empty());
     }
+
     #[test]
     fn a_tile_that_was_made_twice_arrives_once() {
         let mut tiles = tiles(false, 1 << 20);
         let tile = TileIndex { x: 3, z: 3 };
         let arrived = |tiles: &mut NearTiles<TileIndex>| {
             let mut changes = Vec::new();
-            tiles.take(tile, tile);
+            tiles.take(0, tile, tile);
             tiles.hand_out(DVec2::ZERO, &mut changes);
             changes.len()
         };
         assert_eq!(arrived(&mut tiles), 0, "nobody asked");
-        tiles.state.insert(tile, State::Asked);
+        tiles.state.insert(tile, State { shown: false, number: 0, made: Made::Asked });
         assert_eq!(arrived(&mut tiles), 1);
         assert_eq!(arrived(&mut tiles), 0);
     }

@@ -97,7 +97,7 @@ impl Stage {
         self.renderer
             .render(&self.gpu, &frame, &[&self.target.view], |about, layer, pass| match layer {
                 Layer::Solid if drawn.ground => {
-                    terrain.draw(about.index, pass);
+                    terrain.draw(about.index, &|_| false, pass);
                     objects.draw(about.index, terrain.bindings().1, pass);
                 }
                 Layer::Blended if drawn.lights => {
