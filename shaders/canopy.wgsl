@@ -103,7 +103,7 @@ fn canopy_fragment(surface: Surface) -> @location(0) vec4<f32> {
     // plants.wgsl's crown_light.
     let plan = (surface.light.rg * 2.0 - 1.0) * 0.5 + tilt * 0.5;
     let normal = normalize(vec3<f32>(plan.x, 0.8, plan.y));
-    let wrapped = max(dot(normal, frame.sun_direction) + 0.30, 0.0) * (1.0 / 1.30) * max(surface.light.b, frame.moon_key);
+    let wrapped = max(dot(normal, frame.sun_direction) + 0.30, 0.0) * (1.0 / 1.30) * key_seen(surface.light);
     let sky = surface.light.a * (0.55 + 0.45 * normal.y);
     let bounced = 0.10 * max(frame.sun_direction.y, 0.0);
     let light = (frame.sun_irradiance * (wrapped + bounced) + frame.sky_irradiance * sky) * (1.0 / 3.14159265);

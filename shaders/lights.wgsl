@@ -1,6 +1,6 @@
 // lights.wgsl: points of light, as sprites that face the eye, all of a tile in one draw.
 // Reads:  group 0; group 1: where the eye is among the posts; one instance a light.
-// Writes: display colour added to what is there; depth tested, a little nearer than the light, not written.
+// Writes: display colour added to what is there; depth tested, the lower half on level ground, not written.
 // Host:   visual/src/passes/lights.rs (offsets compared in tests/shader_contract.rs).
 //
 // A light gives the eye an illuminance, in lux, by the inverse square and what the air lets through. It is seen where that
@@ -77,7 +77,9 @@ fn emitted(light: Light, to_eye: vec3<f32>) -> vec3<f32> {
     let behind = turned(-axis, to_eye.xz) / light.half_rad.x;
     let upright = up / light.half_rad.y;
     let nearer = min(front, behind);
-    return select(light.back.rgb, light.colour.rgb, front <= behind) * exp2(-nearer * nearer - upright * upright);
+    let lobe = exp2(-nearer * nearer - upright * upright);
+    let beam = select(light.back.rgb, light.colour.rgb, front <= behind) * lobe;
+    return select(beam, light.colour.rgb * (1.0 - lobe), kind == 4u);
 }
 
 @vertex
@@ -90,7 +92,10 @@ fn lights_vertex(@builtin(vertex_index) index: u32, light: Light) -> Corner {
     let thin = lights.thin_from_m / max(distance_m, lights.thin_from_m);
     let keep = max(thin * thin, lights.thinnest);
     let stays = clamp((keep - light.axis.w) / (0.25 * keep) + 0.5, 0.0, 1.0) / keep;
-    let shares = select(1.0, stays, light.axis.w > 0.0);
+    // At dusk they come on one after another, in an order of their own, each over a tenth of the time.
+    let turn = fract(light.axis.w * 97.0);
+    let on = clamp(frame.lamps * 11.0 - turn * 10.0, 0.0, 1.0);
+    let shares = select(1.0, stays * on, light.axis.w > 0.0);
 
     let sent = emitted(light, -relative_m);
     let most = max(max(sent.r, sent.g), sent.b);
@@ -110,12 +115,23 @@ fn lights_vertex(@builtin(vertex_index) index: u32, light: Light) -> Corner {
     let halo_px = 4.0 * soft_px;
     let reach_px = select(3.0 * soft_px, 2.6 * halo_px, halo > 0.002);
 
-    let away_px = (vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0) * reach_px;
     var clip = frame.clip_from_relative * vec4<f32>(relative_m, 1.0);
-    // Ground under the sprite's lower half is nearer than the light: by the sprite's radius over the slope of the look.
+    // Which way is down on the screen, pixels of which y runs down too.
+    let under = frame.clip_from_relative * vec4<f32>(relative_m - vec3<f32>(0.0, 1e-3 * distance_m, 0.0), 1.0);
+    let fall = (under.xy * clip.w - clip.xy * under.w) * frame.viewport_px * vec2<f32>(1.0, -1.0);
+    let fall_length = length(fall);
+    let down = select(vec2<f32>(0.0, 1.0), fall / max(fall_length, 1e-12), fall_length > 1e-12);
+    // A square on its corner: bottom, both sides, top. Its sides join the two triangles.
+    let corner_px = vec2<f32>(f32(i32(index & 1u) - i32(index >> 1u)), f32(i32(index == 0u) - i32(index == 3u)));
+    let half_px = reach_px * 1.41421356;
+    let away_px = half_px * (corner_px.x * vec2<f32>(-down.y, down.x) + corner_px.y * down);
+    // Level ground under the light is nearer the lower it is seen: its depth, which runs evenly over the screen, grows by
+    // its value at the light times the angle over the slope of the look. The lower half lies on that ground, the upper
+    // half is as far as the light; all of it half a pixel's worth nearer, since far ground is drawn up to a pixel off. What
+    // stands higher than that before the light hides it.
     let slope = clamp(abs(relative_m.y) / distance_m, 0.02, 1.0);
-    let nearer = min(reach_px / frame.focal_px / slope + 1.0 / distance_m, 0.35);
-    clip.z = clip.z / (1.0 - nearer);
+    let below_px = max(corner_px.y, 0.0) * half_px + 0.5;
+    clip.z = clip.z * (1.0 + below_px / (frame.focal_px * slope) + 1.0 / distance_m);
     let shown = bright > 0.004 && clip.w > 0.0;
     var corner: Corner;
     let out = vec4<f32>(clip.xy + away_px * vec2<f32>(2.0, -2.0) / frame.viewport_px * clip.w, clip.zw);
@@ -131,7 +147,7 @@ fn lights_vertex(@builtin(vertex_index) index: u32, light: Light) -> Corner {
 fn lights_fragment(corner: Corner) -> @location(0) vec4<f32> {
     let square = dot(corner.away_px, corner.away_px);
     let bell = corner.shape.y * exp(-square * corner.shape.x);
-    // The halo ends at the square's edge (2.6 of its widths: exp(-3.4)) without being seen to end.
+    // The halo ends at the square's nearest edge (2.6 of its widths: exp(-3.4)) without being seen to end.
     let halo = corner.shape.w * max(exp(-square * corner.shape.z) - 0.034, 0.0);
     return vec4<f32>(corner.colour * (bell + halo), 0.0);
 }

@@ -80,10 +80,10 @@ fn objects_vertex(corner: Corner) -> Surface {
     let normal = turned(corner.normal.xyz, corner.rotation);
     let post = vec2<f32>(corner.anchor_post) + (corner.offset_m.xz + local_m.xz) / window.step_m;
     let light = light_on(post);
-    let sun = max(dot(normal, frame.sun_direction), 0.0) * light.b;
+    let sun = max(dot(normal, frame.sun_direction), 0.0) * key_seen(light);
     // Sky from above, ground from below: the ground mirrors a seventh of what falls on it.
     let up = 0.5 + 0.5 * normal.y;
-    let ground = 0.15 * (frame.sun_irradiance * max(frame.sun_direction.y, 0.0) * light.b + frame.sky_irradiance * light.a);
+    let ground = 0.15 * (frame.sun_irradiance * max(frame.sun_direction.y, 0.0) * key_seen(light) + frame.sky_irradiance * light.a);
     var surface: Surface;
     surface.clip = frame.clip_from_relative * vec4<f32>(relative_m, 1.0);
     surface.albedo = corner.colour.rgb * corner.colour.rgb * corner.shade;
@@ -119,7 +119,8 @@ fn objects_fragment(surface: Surface) -> @location(0) vec4<f32> {
     let pixel = fwidth(surface.facade);
     let cell = floor(surface.facade);
     let within = surface.facade - cell;
-    let night = 1.0 - smoothstep(-0.09, 0.0, frame.sun_direction.y);
+    // By the sun, whatever the key light is.
+    let night = 1.0 - smoothstep(-0.09, 0.0, frame.sun_sin);
     var colour = surface.albedo * surface.irradiance * (1.0 / 3.14159265);
     let windowed = surface.kind == 1u || surface.kind == 2u;
     if windowed && surface.facade.y > 0.0 {
@@ -129,18 +130,19 @@ fn objects_fragment(surface: Surface) -> @location(0) vec4<f32> {
         let cell_hash = mixed(surface.seed ^ (u32(i32(cell.x) + 512) * 1973u) ^ (u32(i32(cell.y) + 512) * 9277u));
         let glass = surface.albedo * surface.irradiance * 0.05 + surface.mirrored * 0.16;
         colour = mix(colour, glass, pane);
-        // Six windows of ten are lit; where a pixel spans several, their mean.
-        let lit_one = select(0.0, 1.0, (cell_hash & 255u) < 154u);
+        // Six windows of ten are lit in the end; where a pixel spans several, their mean.
+        let share = 0.6 * frame.lamps;
+        let lit_one = select(0.0, 1.0, f32(cell_hash & 255u) < 256.0 * share);
         let many = clamp(max(pixel.x, pixel.y) * 2.0 - 0.6, 0.0, 1.0);
-        let on = mix(lit_one, 0.6, many);
+        let on = mix(lit_one, share, many);
         let bright = mix(0.35 + f32((cell_hash >> 8u) & 255u) / 255.0 * 0.9, 0.8, many);
         let cool = (cell_hash >> 16u) % 5u == 0u;
         let lamp = select(vec3<f32>(1.0, 0.58, 0.26), vec3<f32>(0.72, 0.85, 1.0), cool && many < 0.5);
         colour += lamp * (night * pane * on * bright * 0.55);
     } else if surface.kind == 3u {
-        colour = colour + surface.mirrored * 0.25 + vec3<f32>(0.5, 0.42, 0.3) * (0.12 * night);
+        colour = colour + surface.mirrored * 0.25 + vec3<f32>(0.5, 0.42, 0.3) * (0.12 * night * frame.lamps);
     } else if surface.kind == 4u {
-        colour += surface.albedo * (2.5 * night);
+        colour += surface.albedo * (2.5 * night * frame.lamps);
     }
     return shown(colour, surface.haze, surface.clip.xy);
 }

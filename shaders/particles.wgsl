@@ -58,7 +58,7 @@ fn particles_vertex(sprite: Sprite, @builtin(vertex_index) index: u32) -> Surfac
     surface.clip = frame.clip_from_relative * vec4<f32>(place, 1.0);
     surface.at = corner;
     surface.colour = vec4<f32>(sprite.colour.rgb * mix(lit, vec3<f32>(1.0), sprite.shines), sprite.colour.a * thin);
-    surface.haze = vec4<f32>(sky_radiance(view) * (1.0 - through), through);
+    surface.haze = vec4<f32>(scattered(sprite.relative_m) * (1.0 - through), through);
     surface.sunward = vec2<f32>(dot(frame.sun_direction, right), dot(frame.sun_direction, up)) * sun_up;
     surface.shines = sprite.shines;
     surface.seed = sprite.seed;

@@ -144,7 +144,7 @@ fn card_vertex(@builtin(vertex_index) index: u32) -> Card {
     card.haze = haze(middle_m);
     let light = light_under(stand.foot_m.xz);
     let sun = frame.sun_direction;
-    card.sun = vec4<f32>(dot(sun, right) * hand, dot(sun, up), dot(sun, to_eye), light.b);
+    card.sun = vec4<f32>(dot(sun, right) * hand, dot(sun, up), dot(sun, to_eye), key_seen(light));
     card.albedo = vec4<f32>(crown_colour(stand.species, stand.tint, stand.turn), f32(LEAVES + u32(kind.shape) * ELEVATIONS + view));
     // The picture's mip, once a card: texels over pixels, of the side that has more.
     let px_per_m = frame.focal_px / length(middle_m);
@@ -198,7 +198,7 @@ fn far_vertex(@builtin(vertex_index) index: u32) -> Plain {
     let facing = dot(outward, frame.sun_direction) + select(0.0, 0.25, corner == 2u);
     let open = select(0.62, 1.25, corner == 2u);
     let shaded = crown_colour(stand.species, stand.tint, stand.turn)
-        * (open * crown_light(facing, light.b, light.a, 0.3 + 0.5 * down));
+        * (open * crown_light(facing, key_seen(light), light.a, 0.3 + 0.5 * down));
     let air = haze(stand.foot_m);
     plain.colour = display(shaded * air.a + air.rgb);
     return plain;
@@ -239,7 +239,7 @@ fn leaf_vertex(
     let bark = vec3<f32>(0.080, 0.068, 0.056) * (0.8 + 0.4 * parts.w);
     let albedo = select(crown_colour(species, parts.w, parts.z), bark, leaf.layer == 2u);
     // A leaf picture's mean shade is near 0.38.
-    leaf.light = albedo * crown_light(dot(normal, frame.sun_direction), light.b, light.a, normal.y) * (normal_open.w * 2.9);
+    leaf.light = albedo * crown_light(dot(normal, frame.sun_direction), key_seen(light), light.a, normal.y) * (normal_open.w * 2.9);
     leaf.haze = haze(at_m);
     return leaf;
 }

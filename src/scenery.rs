@@ -323,6 +323,7 @@ impl Scenery {
             haze_base_m: self.haze_base_m(view.eye_m),
             view_range_m: self.terrain.window().view_range_min_m(),
             exposure: 1.0,
+            lamps: self.look.content.lights,
             time_s,
         };
         let frame = Frame { scene, views: vec![*view], hud };

@@ -236,6 +236,11 @@ impl Things {
 
     /// Bytes on the device.
     pub fn gpu_bytes(&self) -> usize {
-        self.overlay.as_ref().map_or(0, OverlayPass::gpu_bytes) + self.objects.as_ref().map_or(0, Objects::gpu_bytes)
+        self.overlay.as_ref().map_or(0, OverlayPass::gpu_bytes)
+            + self.plants.as_ref().map_or(0, Plants::gpu_bytes)
+            + self.canopy.as_ref().map_or(0, CanopyPass::gpu_bytes)
+            + self.objects.as_ref().map_or(0, Objects::gpu_bytes)
+            + self.lights.as_ref().map_or(0, Lights::gpu_bytes)
+            + self.particles.gpu_bytes()
     }
 }

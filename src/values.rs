@@ -101,7 +101,7 @@ pub enum Without {
     Objects,
     /// Trees and bushes.
     Plants,
-    /// Light points and lit windows.
+    /// Light points, and the light of windows and lamps on buildings.
     Lights,
 }
 

@@ -10,13 +10,22 @@ use terrain::bake::{BakeRequest, Input, bake};
 use terrain::block::ground_map::Climate;
 use terrain::block::{Landscape, Rings};
 use terrain::features::index::{ObjectId, ObjectIndex};
+use terrain::features::solid::FOOT_M;
 use terrain::features::{airfield_lights, settlement_lights::Lamps};
 use terrain::near::TileIndex;
 use terrain::store::World;
 use terrain::verify::overlay;
-use terrain::{Geodetic, Ground};
+use terrain::{Geodetic, Grid, Ground};
 use vegetation::place::{Nursery, TIERS, corner_m};
 use visual::passes::lights::LightInstance;
+use visual::passes::{object_tiles, objects::TILE_M};
+
+/// All tiles of a side over a grid.
+fn tiles_of(grid: &Grid, side_m: f64) -> impl Iterator<Item = TileIndex> {
+    let number = |length_m: f64| (length_m / side_m).ceil() as i32;
+    let (across, down) = (number(grid.east_m() - grid.west_m), number(grid.south_m() - grid.north_m));
+    (0..down).flat_map(move |z| (0..across).map(move |x| TileIndex { x, z }))
+}
 
 /// What is promised, metres.
 const PROMISED_M: f64 = 0.001;
@@ -104,8 +113,6 @@ fn all_that_stands_in_andorra_stands_on_the_ground() {
                     let corners = &world.features.buildings[number as usize].outline;
                     let under = corners.iter().filter_map(|at| area.height_m(at.x, at.y)).fold(f64::INFINITY, f64::min);
                     standing_m = f64::max(standing_m, (object.base_m - under).abs());
-                    let solid = index.building(object).expect("a building in the tree");
-                    assert_eq!(solid.base_m, object.base_m);
                     buildings += 1;
                 }
                 _ => {
@@ -116,6 +123,33 @@ fn all_that_stands_in_andorra_stands_on_the_ground() {
             }
         }
         assert!(buildings > 250 && things > 300, "{buildings} buildings, {things} things");
+
+        // What is sent to the device: of each building the foot of its walls, of each thing its place.
+        let (mut feet, mut instances) = (0, 0);
+        for tile in tiles_of(&grid, TILE_M) {
+            let tile = object_tiles::made(&index, &grid, tile, TILE_M);
+            let post = tile.anchor_post.map(i64::from);
+            let from = DVec2::new(grid.x_m(post[0]), grid.z_m(post[1]));
+            let mut first = 0;
+            for (_, end) in &tile.cuts {
+                let vertices =
+                    tile.mesh.indices[first..*end as usize].iter().map(|at| &tile.mesh.vertices[*at as usize]);
+                let points: Vec<[f64; 3]> = vertices.map(|vertex| vertex.position_m.map(f64::from)).collect();
+                let foot_m = points.iter().map(|at| at[1]).fold(f64::INFINITY, f64::min);
+                // A corner's f32 is off by at most 0.1 mm in plan, and the ground there by as much times its slope.
+                let corners = points.iter().filter(|at| at[1] == foot_m).map(|at| from + DVec2::new(at[0], at[2]));
+                let ground_m = corners.filter_map(|at| area.height_m(at.x, at.y)).fold(f64::INFINITY, f64::min);
+                standing_m = standing_m.max((foot_m + FOOT_M - ground_m).abs());
+                first = *end as usize;
+                feet += 1;
+            }
+            for thing in &tile.things {
+                let [east_m, up_m, south_m] = thing.instance.offset_m.map(f64::from);
+                worst(&mut standing_m, from + DVec2::new(east_m, south_m), up_m);
+                instances += 1;
+            }
+        }
+        assert_eq!((feet, instances), (buildings, things), "each in one tile");
 
         let lamps = Lamps::new(&world.features, &world.cover, DVec2::new(grid.west_m, grid.north_m), 6_000.0);
         let tiles = (0..6).flat_map(|z| (0..6).map(move |x| (x, z)));

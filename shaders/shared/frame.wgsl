@@ -37,7 +37,7 @@ struct FrameUniforms {
     moon_light: vec3<f32>,           // exposed radiance of the moon's lit side, as the eye sees it
     haze_scale_m: f32,               // height over which haze thins by a factor e
     aerial_reach_m: f32,             // greatest distance of the aerial table; 0: there is none
-    lamps: f32,                      // share of a town's lamps that are lit, 0 by day
+    lamps: f32,                      // share of lamps and windows that are lit, 0 by day and where no lights are drawn
     moon_share: f32,                 // of the moon's light, by phase: 1 when full
     sun_sin: f32,                    // of the sun's own elevation
 }

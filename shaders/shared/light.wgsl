@@ -16,12 +16,17 @@ fn light_at(local: vec2<f32>, slot: vec2<f32>) -> vec4<f32> {
     return textureSampleLevel(light_maps, map_sampler, texel * window.light_texel, window.light_layer, 0.0);
 }
 
+// Share of the key light that reaches a place, by its texel of the light map: no light map shadows the moon.
+fn key_seen(light: vec4<f32>) -> f32 {
+    return max(light.b, frame.moon_key);
+}
+
 // Radiance of ground of an albedo under sun and sky; `light` is a texel of the light map, `tilt` bends its normal.
 fn lit(albedo: vec3<f32>, light: vec4<f32>, tilt: vec2<f32>) -> vec3<f32> {
     let plan = light.rg * 2.0 - 1.0;
     let up = sqrt(max(1.0 - dot(plan, plan), 0.01));
     // The tilt is small: the bent normal is not made unit length again.
-    let sun = max(dot(vec3<f32>(plan + tilt, up).xzy, frame.sun_direction), 0.0) * max(light.b, frame.moon_key);
+    let sun = max(dot(vec3<f32>(plan + tilt, up).xzy, frame.sun_direction), 0.0) * key_seen(light);
     let sky = light.a * (0.5 + 0.5 * up);
     // What the sky does not reach is lit by other ground a little.
     let bounced = 0.12 * (1.0 - sky) * max(frame.sun_direction.y, 0.0);

@@ -48,6 +48,6 @@ fn water_seen(ground: vec3<f32>, light: vec4<f32>, relative_m: vec3<f32>, ripple
     let steep = half_way.y * half_way.y;
     let toward = 1.0 - max(dot(half_way, to_eye), 0.0);
     let mirror = 0.02 + 0.98 * (toward * toward) * (toward * toward) * toward;
-    let glitter = mirror * waves / (4.0 * max(to_eye.y, 0.12) * max(steep * steep, 0.05)) * light.b * step(0.0, frame.sun_direction.y);
+    let glitter = mirror * waves / (4.0 * max(to_eye.y, 0.12) * max(steep * steep, 0.05)) * key_seen(light) * step(0.0, frame.sun_direction.y);
     return ground * (1.0 - fresnel) + mirrored * fresnel + frame.sun_irradiance * min(glitter, 3.0);
 }

@@ -322,10 +322,14 @@ fn an_edited_ground_is_met_from_the_step_that_names_it() {
     let wrong = Edit::Crater(Crater { centre_m: DVec2::NAN, radius_m: 1.0, depth_m: 1.0 });
     assert!(before.edited(&[wrong]).is_err());
     let flown = |ground: &SceneGround| {
-        let mut scene = busy();
-        let (half, early) = run(&mut scene, &before, 360);
+        // Twenty shells straight down while the ground is the old one, sixty over the new one.
+        let mut scene = empty(surroundings());
+        let down = Muzzle { direction: DVec3::Z, ..gun() };
+        scene.order(fire(scene.own_id(), "shell", down, 20, 600.0)).unwrap();
+        let (half, early) = run(&mut scene, &before, 2_400);
         assert_eq!(half.ground_version, 0);
-        let (last, late) = run(&mut scene, ground, 960);
+        scene.order(fire(scene.own_id(), "shell", down, 60, 600.0)).unwrap();
+        let (last, late) = run(&mut scene, ground, 3_000);
         assert_eq!(last.ground_version, ground.version());
         (scene.hash(), impacts(&early), impacts(&late))
     };

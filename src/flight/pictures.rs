@@ -46,6 +46,7 @@ const STEPS_A_LOOK: u32 = 30;
 pub fn take(flown: Scenery, plan: &Plan, args: &FlyArgs, date: UtcTime) -> Result<Taken, Failure> {
     let own_models = flown.things.own_models().to_vec();
     let (gpu, world, look) = (flown.gpu.clone(), flown.world.clone(), flown.look);
+    // All of it goes now; a scenery taken apart would keep what is not taken until the end.
     drop(flown);
     let look = Look { wait: true, keep_depth: false, ..look };
     let mut scenery = Scenery::new(gpu.clone(), capture::FORMAT, world.clone(), look);

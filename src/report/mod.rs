@@ -120,7 +120,7 @@ mod tests {
              sources[].height_scale sources[].void_samples sources[].note wall_s peak_rss_mib \
              features.highways.read features.highways.kept features.highways.skipped features.highways.skipped_for.outside \
              features.highways.notes.turned lakes[].name lakes[].level_m lakes[].level_from lakes[].posts cover.cell_m \
-             cover.shares.Grass cover.from_features"
+             cover.shares.Grass cover.from_features imagery"
         );
         let heights = Heights { points: vec![HeightPoint::default()] };
         assert_eq!(

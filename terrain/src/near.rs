@@ -86,6 +86,9 @@ enum Made<T> {
 /// Makes what a tile holds.
 type Make<T> = Box<dyn Fn(TileIndex) -> T + Send>;
 
+/// A tile to make, and by what from now on if that has changed.
+type Job<T> = (TileIndex, Option<(u64, Make<T>)>);
+
 struct Shared<T> {
     queue: Mutex<Queue<T>>,
     wake: Condvar,
@@ -253,7 +256,12 @@ impl<T: Send + 'static> NearTiles<T> {
 
     fn take(&mut self, number: u64, tile: TileIndex, made: T) {
         match self.state.get_mut(&tile) {
-            Some(state) if number >= state.number => state.made = Made::Ready(Arc::new(made)),
+            // One asked for twice, since the eye left and came back, is made twice and handed out once.
+            Some(state) if number >= state.number => {
+                if matches!(state.made, Made::Asked) {
+                    state.made = Made::Ready(Arc::new(made));
+                }
+            }
             // By a function of before, which was at it when the other came.
             Some(_) => self.ask(vec![(0.0, tile)]),
             None => {}
@@ -284,7 +292,7 @@ impl<T: Send + 'static> NearTiles<T> {
 
 impl<T> Shared<T> {
     /// The next tile to make, and by what if that has changed.
-    fn next(&self) -> Option<(TileIndex, Option<(u64, Make<T>)>)> {
+    fn next(&self) -> Option<Job<T>> {
         let mut queue = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
         loop {
             if queue.closed {
@@ -408,5 +416,21 @@ mod tests {
         assert_eq!(tiles.late(), 0);
         assert!(arrived > 20);
         assert!(tiles.update(DVec2::NAN, f64::NAN).is_empty());
+    }
+
+    #[test]
+    fn a_tile_that_was_made_twice_arrives_once() {
+        let mut tiles = tiles(false, 1 << 20);
+        let tile = TileIndex { x: 3, z: 3 };
+        let arrived = |tiles: &mut NearTiles<TileIndex>| {
+            let mut changes = Vec::new();
+            tiles.take(0, tile, tile);
+            tiles.hand_out(DVec2::ZERO, &mut changes);
+            changes.len()
+        };
+        assert_eq!(arrived(&mut tiles), 0, "nobody asked");
+        tiles.state.insert(tile, State { shown: false, number: 0, made: Made::Asked });
+        assert_eq!(arrived(&mut tiles), 1);
+        assert_eq!(arrived(&mut tiles), 0);
     }
 }

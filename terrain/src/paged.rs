@@ -38,6 +38,11 @@ impl<T: Copy> Paged<T> {
         self.base.len()
     }
 
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.base.is_empty()
+    }
+
     /// All values in a row, if none has changed.
     #[inline(always)]
     pub fn whole(&self) -> Option<&[T]> {

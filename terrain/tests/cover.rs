@@ -82,19 +82,20 @@ fn a_world_keeps_its_cover() {
     assert_eq!(read.cover.cell_m(), 50.0);
 }
 
-/// Bakes the middle of the default world with a photograph.
+/// Bakes the middle of the default world with a photograph and without features, so that the ground is all by rule.
 fn with_imagery(pictures: &[std::path::PathBuf]) -> World {
     let mut request = default_request();
     request.size_km = Some([60.0, 60.0]);
+    request.features.clear();
     request.imagery = pictures.to_vec();
     bake(&request, &mut |_, _| ()).unwrap()
 }
 
-/// Mean colour of the land in the middle blocks' ground maps, and the mean step between neighbouring texels.
-fn looks(world: &World) -> ([f64; 3], f64) {
+/// Texels of all ground maps as if there were no water: place, and square roots of the albedo, 0..=255.
+fn texels(world: &World) -> Vec<([f64; 2], [u8; 3])> {
     let grid = world.field.grid();
     let climate = terrain::block::ground_map::Climate::of(world.projection.centre(), world.info.statistics.mean_m);
-    let (mut sum, mut number, mut steps) = ([0.0; 3], 0.0, 0.0);
+    let mut all = Vec::new();
     for block in grid.blocks() {
         let dress =
             terrain::block::ground_map::Dress { cover: &world.cover, strips: &[], imagery: world.imagery.as_deref() };
@@ -106,16 +107,13 @@ fn looks(world: &World) -> ([f64; 3], f64) {
             &|_, _| f64::INFINITY,
             &|_, _| false,
         );
-        let texels: Vec<&[u8]> = map[..terrain::block::ground_map::MAP_BYTES].chunks_exact(4).collect();
-        for pair in texels.windows(2) {
-            for channel in 0..3 {
-                sum[channel] += (f64::from(pair[0][channel]) / 255.0).powi(2);
-            }
-            steps += f64::from(pair[0][1].abs_diff(pair[1][1]));
-            number += 1.0;
+        for (at, texel) in map[..terrain::block::ground_map::MAP_BYTES].chunks_exact(4).enumerate() {
+            let part = |i: usize| i as f64 * grid.block_m() / 63.0;
+            let place = [grid.x_m(block.first_column()) + part(at % 64), grid.z_m(block.first_row()) + part(at / 64)];
+            all.push((place, [texel[0], texel[1], texel[2]]));
         }
     }
-    (sum.map(|c| c / number), steps / number)
+    all
 }
 
 #[test]
@@ -129,12 +127,21 @@ fn a_coarse_photograph_tints_and_keeps_the_detail() {
     let (plain, tinted) = (with_imagery(&[]), with_imagery(&[picture]));
     assert!(plain.imagery.is_none() && tinted.imagery.is_some());
     assert!((4_000.0..9_000.0).contains(&tinted.info.imagery[0].pixel_m[0]));
-    let ((before, detail), (after, kept)) = (looks(&plain), looks(&tinted));
-    println!("{before:?} {detail} becomes {after:?} {kept}");
-    assert_ne!(before, after);
-    // Detail is in proportion to the square root of the brightness that it lies on.
-    let expected = detail * (after[1] / before[1]).sqrt();
-    assert!((kept / expected - 1.0).abs() < 0.3, "{kept} and {expected}");
+    let imagery = tinted.imagery.as_ref().unwrap();
+    let mut far = 0;
+    for ((place, by_rule), (_, shown)) in texels(&plain).into_iter().zip(texels(&tinted)) {
+        let factors = imagery.factors(tinted.field.grid(), place[0], place[1]);
+        for channel in 0..3 {
+            let root = f64::from(factors[channel]).sqrt();
+            let (rule, shown) = (f64::from(by_rule[channel]), f64::from(shown[channel]));
+            // Both are whole numbers: half of one after, half of one before times the factor; and f32.
+            let rounding = 0.5 + 0.5 * root + 1e-3;
+            assert!((shown - (rule * root).min(255.0)).abs() <= rounding, "{place:?}: {rule} x {root} is {shown}");
+            far += u32::from((shown - rule).abs() > 10.0);
+        }
+    }
+    println!("{far} colours of texels are more than 10 of 255 from the rule's");
+    assert!(far > 1_000);
     let folder = std::env::temp_dir().join(format!("poligon-imagery-{}.world", std::process::id()));
     tinted.write(&folder).unwrap();
     let read = World::read(&folder).unwrap();
@@ -166,7 +173,7 @@ fn a_fine_photograph_replaces() {
     let grid = world.field.grid();
     let photo = terrain::bake::photo::open(&request.imagery[0]).unwrap();
     let inverse = photo.place.inverse();
-    let (mut seen, mut number, mut difference) = (0, 0, 0.0);
+    let (mut seen, mut number, mut difference) = (0_u32, 0_u32, 0.0);
     for block in grid.blocks() {
         let Some(texels) = imagery.texels(grid, block) else { continue };
         for (at, texel) in texels.chunks_exact(4).enumerate().filter(|(_, texel)| texel[3] == 255) {
@@ -179,9 +186,10 @@ fn a_fine_photograph_replaces() {
             // The square root of linear light is close to the sRGB code itself.
             difference += (f64::from(texel[1]) / 255.0 - green).abs();
             number += 1;
-            seen += usize::from(column < photo.place.columns);
+            seen += u32::from(column < photo.place.columns);
         }
     }
+    assert_eq!(seen, number, "texels shown lie in the picture");
     println!("{seen} texels, mean difference {:.4}", difference / f64::from(number));
     assert!(number > 20_000);
     // Codes and roots differ by at most 0.04; texels mean over pixels of a picture with edges.

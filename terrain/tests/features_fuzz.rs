@@ -169,7 +169,115 @@ fn shapefiles() {
     let content = features::read(&shp, Some(&dbf), None).unwrap();
     assert_eq!(content.features[0].tags.get("natural"), Some("wood"));
     assert!(features::read(&shp, None, Some("PROJCS[\"UTM\"]")).is_err());
+    assert_eq!(features::read(&shp, None, None).unwrap().features[0].note, Some("read without a .dbf"));
+    let error = features::read(&gzip(&shp), Some(&dbf), None).unwrap_err().to_string();
+    assert!(error.contains("outside a gzip"), "{error}");
     fuzz("shapefile", &shp, Some(&dbf), 1_000);
+}
+
+/// Three square kilometres with a table of one column, and the bytes of both.
+fn shapes_and_table(column: &str, values: [&str; 3]) -> (Vec<u8>, Vec<u8>) {
+    let mut shp = Cursor::new(Vec::new());
+    let mut writer = shapefile::ShapeWriter::new(&mut shp);
+    for at in 0..3 {
+        let west = 78.0 + 0.1 * f64::from(at);
+        let ring =
+            [(0.0, 0.0), (0.0, 0.05), (0.05, 0.05), (0.0, 0.0)].map(|(x, y)| shapefile::Point::new(west + x, 42.0 + y));
+        writer.write_shape(&shapefile::Polygon::new(shapefile::PolygonRing::Outer(ring.to_vec()))).unwrap();
+    }
+    writer.finalize().unwrap();
+    drop(writer);
+    let mut dbf = Cursor::new(Vec::new());
+    let builder = shapefile::dbase::TableWriterBuilder::new();
+    let mut table = builder.add_character_field(column.try_into().unwrap(), 20).build_with_dest(&mut dbf);
+    for value in values {
+        let mut record = shapefile::dbase::Record::default();
+        record.insert(column.into(), shapefile::dbase::FieldValue::Character(Some(value.into())));
+        table.write_record(&record).unwrap();
+    }
+    drop(table);
+    (shp.into_inner(), dbf.into_inner())
+}
+
+#[test]
+fn a_row_belongs_to_its_shape() {
+    let (shp, dbf) = shapes_and_table("natural", ["wood", "sand", "scrub"]);
+    let told = |dbf: &[u8]| -> Vec<String> {
+        let content = features::read(&shp, Some(dbf), None).unwrap();
+        content.features.iter().map(|feature| feature.tags.get("natural").unwrap_or_default().to_owned()).collect()
+    };
+    assert_eq!(told(&dbf), ["wood", "sand", "scrub"]);
+    // The first is marked as deleted: its shape is there, and so is what the row says of it.
+    let head = usize::from(u16::from_le_bytes([dbf[8], dbf[9]]));
+    let mut marked = dbf.clone();
+    assert_eq!(marked[head], b' ');
+    marked[head] = b'*';
+    assert_eq!(told(&marked), ["wood", "sand", "scrub"]);
+    let mut short = dbf.clone();
+    short[4] = 2;
+    let error = features::read(&shp, Some(&short), None).unwrap_err().to_string();
+    assert!(error.contains("3 rows in the .dbf"), "{error}");
+}
+
+#[test]
+fn only_an_outline_that_says_nothing_is_a_lake() {
+    use terrain::bake::features::{RawFeature, place};
+    let projection = terrain::Projection::new(terrain::Geodetic::from_degrees(42.0, 78.1)).unwrap();
+    let grid = terrain::Grid::centred(200.0, 4, 4).unwrap();
+    let waters = |features: &[RawFeature]| {
+        let placed = place(features, &projection, &grid);
+        (placed.waters.len(), placed.counts.described())
+    };
+    let json = |properties: &str| {
+        let text = format!(
+            r#"{{"type":"FeatureCollection","features":[{{"type":"Feature","properties":{properties},"geometry":
+            {{"type":"Polygon","coordinates":[[[78.0,42.0],[78.05,42.0],[78.05,42.05],[78.0,42.0]]]}}}}]}}"#
+        );
+        waters(&features::read(text.as_bytes(), None, None).unwrap().features).0
+    };
+    for lake in [
+        "null",
+        "{}",
+        r#"{"name":"A","level_m":9,"fid":3,"region":"alps","OSM_ID":"7","boundary":null}"#,
+        r#"{"natural":"water"}"#,
+    ] {
+        assert_eq!(json(lake), 1, "{lake}");
+    }
+    for other in [
+        r#"{"boundary":"x"}"#,
+        r#"{"place":"town","name":"A"}"#,
+        r#"{"featurecla":"Land"}"#,
+        r#"{"fclass":"military"}"#,
+    ] {
+        assert_eq!(json(other), 0, "{other}");
+    }
+    let (shp, dbf) = shapes_and_table("fclass", ["water", "forest", "nature_reserve"]);
+    let (number, counts) = waters(&features::read(&shp, Some(&dbf), None).unwrap().features);
+    assert_eq!((number, counts["forests"].kept, counts["others"].skipped_for["no kind that is drawn"]), (1, 1, 1));
+    let (shp, dbf) = shapes_and_table("name", ["A", "B", ""]);
+    assert_eq!(waters(&features::read(&shp, Some(&dbf), None).unwrap().features).0, 3);
+    let (number, counts) = waters(&features::read(&shp, None, None).unwrap().features);
+    assert_eq!((number, counts["lakes"].notes["read without a .dbf"]), (3, 3));
+}
+
+#[test]
+fn what_lies_beside_a_shapefile_is_found_or_missed_aloud() {
+    use terrain::bake::Input;
+    let folder = std::env::temp_dir().join(format!("poligon-beside-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let (shp, dbf) = shapes_and_table("natural", ["wood", "sand", "scrub"]);
+    let path = folder.join("AREAS.SHP");
+    std::fs::write(&path, &shp).unwrap();
+    std::fs::write(folder.join("AREAS.DBF"), &dbf).unwrap();
+    let read = |path: &Path| features::open(&Input::File(path.into()));
+    assert_eq!(read(&path).unwrap().features[1].tags.get("natural"), Some("sand"));
+    std::fs::write(folder.join("AREAS.PRJ"), "PROJCS[\"UTM\"]").unwrap();
+    assert!(read(&path).unwrap_err().to_string().contains("PROJCS"));
+    std::fs::remove_file(folder.join("AREAS.PRJ")).unwrap();
+    // A folder is no table.
+    std::fs::create_dir(folder.join("AREAS.dbf")).unwrap();
+    assert!(read(&path).is_err());
+    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]

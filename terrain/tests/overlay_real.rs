@@ -115,7 +115,7 @@ fn roads_have_their_nominal_width_along_the_slopes_of_andorra() {
         let (mut short, mut steepest) = (0_u32, 0.0_f64);
         for road in world.features.roads.iter().filter(|road| !road.tunnel) {
             let half_m = 0.5 * f64::from(road.width_m);
-            for ribbon in Ribbon::of_line(&world.field, &lattice, &road.line, half_m) {
+            for ribbon in Ribbon::of_line(&world.field, &lattice, &road.line, half_m, usize::MAX) {
                 for segment in 0..ribbon.segments() {
                     ribbon.segment(&world.field, &lattice, segment, |quad| {
                         steepest = steepest.max(quad.stretch);

@@ -1,7 +1,9 @@
 //! The closed forest: a surface over the crowns, where single trees are too many to draw.
 //!
-//! A tile is [`CELLS`] x [`CELLS`] cells on the lattice of the posts, each cut as the ground is from south-west to north-east, so
-//! between its corners the canopy never dips below the ground. Over a corner it stands as high as most trees do (two
+//! A tile is [`CELLS`] x [`CELLS`] cells on the lattice of the posts, each cut as the ground is from south-west to north-east.
+//! Where posts are more than 50 m apart a cell is no larger than the posts', so the canopy follows the ground and never dips
+//! below it. With closer posts a cell spans two and more of them, asks the ground at its corners alone, and rough ground
+//! between them may come nearer to the canopy or stand out of it. Over a corner it stands as high as most trees do (two
 //! thirds of theirs, so that trees rise from it) times the share of forest around; where there is none it comes down to the ground.
 //!
 //! Invariant: a tile is a function of the world and the tile alone; neighbours agree on their border.

@@ -9,12 +9,12 @@
 //! subset of every larger share; a plant's `height_m` is the ground query at its own quantised place, rounded to f32.
 
 use crate::clearings::Clearings;
-use crate::species::{Flora, SPECIES, Shape};
+use crate::species::{Flora, SPECIES, Shape, Site};
 use bed::Bed;
 use glam::DVec2;
 use std::sync::{Arc, OnceLock};
 use terrain::block::Landscape;
-use terrain::features::cover::Cover;
+use terrain::features::cover::{Cover, CoverClass};
 use terrain::near::TileIndex;
 use terrain::{Area, Grid, thread_time};
 
@@ -144,9 +144,14 @@ impl Nursery {
         }
     }
 
-    /// Whether anything may grow at all.
+    /// Whether nothing may grow anywhere.
     pub fn is_bare(&self) -> bool {
-        self.landscape.cover.cells().is_empty()
+        !self.landscape.cover.has(|class| Site::of(class).is_some())
+    }
+
+    /// Whether there is forest anywhere.
+    pub fn has_forest(&self) -> bool {
+        self.landscape.cover.has(CoverClass::is_forest)
     }
 
     /// Its ground.

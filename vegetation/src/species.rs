@@ -1,8 +1,9 @@
 //! What may grow: a table, and the choice among it by cover, latitude, height and a number of a hash.
 //!
-//! Heights and belts come from botanical handbooks, each with its source beside it; colours are linear albedos of whole
-//! crowns as seen from the air, dark because leaves shade each other (conifer stands reflect 5 to 10 % of green light,
-//! broadleaf stands 8 to 15 %: T. Oke, Boundary Layer Climates, 1987, table 1.1 gives 5-15 % and 15-20 % of all light).
+//! Heights and belts come from botanical handbooks, named beside each tree and juniper; shrubs, steepest slopes and weights are
+//! estimates. Colours are linear albedos of whole crowns as seen from the air, dark because leaves shade each other (conifer
+//! stands reflect 5 to 10 % of green light, broadleaf stands 8 to 15 %: T. Oke, Boundary Layer Climates, 1987, table 1.1 gives
+//! 5-15 % and 15-20 % of all light).
 //!
 //! Invariant: a species' number is its place in [`SPECIES`]; only f32 comparisons and sums decide, so the choice is the same
 //! on every machine.

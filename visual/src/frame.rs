@@ -32,6 +32,8 @@ pub struct Scene {
     pub view_range_m: f64,
     /// Multiplies the exposure chosen from the light (see `sky::exposure`); 1 is neutral.
     pub exposure: f32,
+    /// Whether what people light in the dark is lit: lamps, windows.
+    pub lamps: bool,
     /// Scene time, seconds; drives only what moves by itself, such as ripples on water.
     pub time_s: f64,
 }
@@ -46,6 +48,7 @@ impl Default for Scene {
             haze_base_m: 0.0,
             view_range_m: 66_000.0,
             exposure: 1.0,
+            lamps: true,
             time_s: 0.0,
         }
     }
@@ -71,6 +74,7 @@ impl Scene {
             visibility_m: or(self.visibility_m, fallback.visibility_m).clamp(100.0, 300_000.0),
             haze_base_m: or(self.haze_base_m, 0.0).clamp(-12_000.0, 9_000.0),
             view_range_m: or(self.view_range_m, fallback.view_range_m).clamp(1_000.0, 1e7),
+            lamps: self.lamps,
             exposure: if self.exposure.is_finite() { self.exposure.clamp(0.01, 100.0) } else { 1.0 },
             time_s: or(self.time_s, 0.0),
         }

@@ -425,7 +425,7 @@ pub fn fog_share(visibility_m: f64) -> f64 {
     1.0 - ((visibility_m / fog_m).ln() / (haze_m / fog_m).ln()).clamp(0.0, 1.0)
 }
 
-/// Share of a town's lamps that are lit under a sun at an elevation, radians: they come on one after another about two
+/// Share of lamps and windows that are lit under a sun at an elevation, radians: they come on one after another about two
 /// degrees under the horizon.
 pub fn lamps(sun_elevation_rad: f64) -> f32 {
     ((-1.5 - sun_elevation_rad.to_degrees()) / 1.5).clamp(0.0, 1.0) as f32

@@ -82,7 +82,7 @@ pub struct FrameUniforms {
     pub haze_scale_m: f32,
     /// Greatest distance of the aerial table, metres; 0 where there is none.
     pub aerial_reach_m: f32,
-    /// Share of a town's lamps that are lit.
+    /// Share of lamps and windows that are lit.
     pub lamps: f32,
     /// Of the moon's light, by phase.
     pub moon_share: f32,
@@ -143,7 +143,7 @@ impl FrameUniforms {
             moon_light: light.moon_disc.to_array(),
             haze_scale_m,
             aerial_reach_m: if light.aerial.is_empty() { 0.0 } else { scene.view_range_m as f32 },
-            lamps: sky::lamps(scene.sun_elevation_rad()),
+            lamps: f32::from(u8::from(scene.lamps)) * sky::lamps(scene.sun_elevation_rad()),
             moon_share: moonlight.share as f32,
             sun_sin: scene.sun_direction.y as f32,
         }

@@ -112,6 +112,7 @@ fn nonsense_is_refused_or_drawn_but_never_fatal() {
         haze_base_m: f64::INFINITY,
         view_range_m: -1.0,
         exposure: f32::NAN,
+        lamps: true,
         time_s: f64::NEG_INFINITY,
     };
     for eye_m in [DVec3::NAN, DVec3::new(1e7, 1e6, -1e7), DVec3::new(0.0, -11_000.0, 0.0)] {

@@ -111,6 +111,16 @@ fn every_shader_parses_and_validates() {
 }
 
 #[test]
+fn the_moon_reaches_whatever_the_sun_does() {
+    for (name, _) in shaders::SOURCES {
+        // A light map's sunlight is nothing while the moon is the key light: `key_seen` alone may read it.
+        let source = shaders::joined(name);
+        let reads = source.split("light.b").skip(1).filter(|rest| !rest.starts_with(char::is_alphanumeric)).count();
+        assert!(reads <= usize::from(source.contains("fn key_seen")), "{name}: {reads} reads of light.b");
+    }
+}
+
+#[test]
 fn frame_uniforms_are_the_same_on_both_sides() {
     let host = host![
         FrameUniforms:

@@ -15,6 +15,7 @@ use super::raster::{Affine, MAX_SAMPLES, Raster, Unreadable};
 use crate::projection::{Geodetic, TransverseMercator};
 use glam::DVec2;
 use std::io::Cursor;
+use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
@@ -58,7 +59,8 @@ pub fn read(bytes: &[u8]) -> Result<Raster, Unreadable> {
     Ok(raster)
 }
 
-/// Reads red, green, blue and perhaps alpha of 8 bits.
+/// Reads red, green, blue and perhaps alpha of 8 bits; also the luminance and colour differences that JPEG has in their
+/// place. Bands beyond them (infrared) are left out. What equals `GDAL_NODATA` in all three shows nothing.
 ///
 /// # Errors
 /// [`Unreadable`] says what in the file is not as it must be.
@@ -69,12 +71,18 @@ pub fn read_photo(bytes: &[u8]) -> Result<Photo, Unreadable> {
     let bits = first_u32(&mut decoder, Tag::BitsPerSample)?.unwrap_or(1);
     let bands = first_u32(&mut decoder, Tag::SamplesPerPixel)?.unwrap_or(1).max(1);
     let planar = first_u32(&mut decoder, Tag::PlanarConfiguration)? == Some(2);
-    if bits != 8 || !(3..=4).contains(&bands) || planar {
-        return Err(Unreadable::new(
-            "red, green, blue and perhaps alpha of 8 bits, pixel by pixel",
-            format!("{bands} bands of {bits} bits{}", if planar { ", band by band" } else { "" }),
-        ));
-    }
+    let colour = decoder.colortype().map_err(damaged)?;
+    let (samples, luminance) = match colour {
+        ColorType::RGB(8) if !planar => (3, false),
+        ColorType::YCbCr(8) if !planar => (3, true),
+        ColorType::RGBA(8) if !planar => (4, false),
+        _ => {
+            return Err(Unreadable::new(
+                "red, green, blue and perhaps alpha of 8 bits, pixel by pixel",
+                format!("{bands} bands, {colour:?}{}", if planar { ", band by band" } else { "" }),
+            ));
+        }
+    };
     let image_bytes = check_size(bytes.len(), columns, rows, bands, bits)?;
     let most = usize::try_from(image_bytes).unwrap_or(usize::MAX).saturating_add(1 << 24);
     let mut limits = Limits::default();
@@ -92,14 +100,27 @@ pub fn read_photo(bytes: &[u8]) -> Result<Photo, Unreadable> {
         format: "GeoTIFF",
         credit: credit(&mut decoder),
     };
+    let no_data = text(&mut decoder, Tag::GdalNodata).and_then(|t| t.trim().parse::<f64>().ok());
     let pixels = match decoder.read_image().map_err(damaged)? {
-        DecodingResult::U8(samples) => {
-            let alpha = |pixel: &[u8]| pixel.get(3).copied().unwrap_or(255);
-            samples.chunks_exact(bands as usize).map(|p| [p[0], p[1], p[2], alpha(p)]).collect()
+        DecodingResult::U8(all) => {
+            let colour = |p: &[u8]| if luminance { red_green_blue([p[0], p[1], p[2]]) } else { [p[0], p[1], p[2]] };
+            let pixel = |p: &[u8]| {
+                let [r, g, b] = colour(p);
+                let nothing = no_data.is_some_and(|none| [r, g, b].iter().all(|c| f64::from(*c) == none));
+                [r, g, b, if nothing { 0 } else { p.get(3).copied().unwrap_or(255) }]
+            };
+            all.chunks_exact(samples).map(pixel).collect()
         }
         _ => return Err(Unreadable::new("colours of 8 bits", "others")),
     };
     Photo::new(place, pixels)
+}
+
+/// Colours of luminance and colour differences of the full range (JFIF 1.02; coefficients of ITU-R BT.601).
+fn red_green_blue([y, blue, red]: [u8; 3]) -> [u8; 3] {
+    let (y, blue, red) = (f32::from(y), f32::from(blue) - 128.0, f32::from(red) - 128.0);
+    // A cast saturates.
+    [y + 1.402 * red, y - 0.344_136 * blue - 0.714_136 * red, y + 1.772 * blue].map(|c| c.round() as u8)
 }
 
 /// Bytes of the whole image, if so many can be in a file of that length.

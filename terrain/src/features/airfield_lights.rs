@@ -104,13 +104,16 @@ fn two_sided(at: DVec2, colours: [[f32; 3]; 2], intensity_cd: f32, axis: DVec3, 
     }
 }
 
-/// Edge lights, white; yellow over the last 600 m or third of each direction's run, whichever is less.
+/// Edge lights, white all around and stronger along the runway; there yellow over the last 600 m or third of each direction's run, whichever is less.
 fn edges(runway: &Runway, lights: &mut Vec<LightPoint>) {
     let length_m = length_m(runway);
     let (ahead, right) = ahead_and_right(runway, 0);
     let gaps = (length_m / EDGE_SPACING_M).ceil().clamp(1.0, 1_000.0) as u32;
     let caution_m = (length_m / 3.0).min(600.0);
     let intensity_cd = if is_paved(runway) { 5_000.0 } else { 200.0 };
+    // All around for who circles: at least 50 cd; at places without other lights 25 will do (5.3.9.8, 5.3.9.9).
+    // Along a paved runway its beams' yellow must stay yellow.
+    let (around, around_cd) = if is_paved(runway) { (Beam::Beside, 50.0) } else { (Beam::Even, 25.0) };
     let seen = |left_m: f64| if is_paved(runway) && left_m < caution_m { YELLOW } else { WHITE };
     for number in 0..=gaps {
         let along_m = length_m * f64::from(number) / f64::from(gaps);
@@ -119,7 +122,10 @@ fn edges(runway: &Runway, lights: &mut Vec<LightPoint>) {
         for side in [-1.0, 1.0] {
             let out_m = 0.5 * f64::from(runway.width_m) + OUTSIDE_M;
             let at = runway.ends[0] + ahead * along_m + right * (side * out_m);
-            lights.push(two_sided(at, colours, intensity_cd, raised(-ahead, 3.5), [8.0, 5.0]));
+            let beam = two_sided(at, colours, intensity_cd, raised(-ahead, 3.5), [8.0, 5.0]);
+            let LightPoint { axis, half_rad, .. } = beam;
+            lights.push(beam);
+            lights.push(LightPoint { axis, half_rad, beam: around, ..LightPoint::even(at, LOW_M, WHITE, around_cd) });
         }
     }
 }

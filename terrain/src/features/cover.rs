@@ -114,6 +114,12 @@ impl Cover {
         &self.cells
     }
 
+    /// Whether any cell is of a kind.
+    pub fn has(&self, kind: impl Fn(CoverClass) -> bool) -> bool {
+        let is: Vec<bool> = (0..=u8::MAX).map(|cell| kind(CoverClass::of(cell))).collect();
+        self.cells.iter().any(|cell| is[usize::from(*cell)])
+    }
+
     /// A cell's number, [`CoverClass::Unknown`] outside.
     pub fn cell(&self, column: i64, row: i64) -> u8 {
         if (0..i64::from(self.columns)).contains(&column) && (0..i64::from(self.rows)).contains(&row) {
@@ -162,6 +168,11 @@ mod tests {
         assert_eq!(cover.class_at(grid.west_m - 1.0, 0.0), CoverClass::Unknown);
         assert_eq!(cover.class_at(f64::NAN, 0.0), CoverClass::Unknown);
         assert!(Cover::new(&grid, 2, vec![0; 5]).is_none());
+        assert!(cover.has(CoverClass::is_forest));
+        let rock = vec![CoverClass::Rock as u8 | FROM_FEATURES; (side * side) as usize];
+        let rock = Cover::new(&grid, 2, rock).unwrap();
+        assert!(rock.has(|class| class == CoverClass::Rock) && !rock.has(CoverClass::is_forest));
+        assert!(!Cover::unknown(&grid).has(|_| true));
         assert_eq!(Cover::unknown(&grid).class_at(0.0, 0.0), CoverClass::Unknown);
     }
 }

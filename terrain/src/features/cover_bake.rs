@@ -138,6 +138,13 @@ impl Band<'_> {
         row(north_m).clamp(self.first_row, last)..row(south_m).clamp(self.first_row, last)
     }
 
+    /// Those and one more on either side: two roundings of a row's middle need not agree, so who asks must look.
+    fn rows_about(&self, north_m: f64, south_m: f64) -> std::ops::Range<usize> {
+        let rows = self.rows(north_m, south_m);
+        let last = self.first_row + self.cells.len() / self.raster.columns;
+        rows.start.saturating_sub(1).max(self.first_row)..(rows.end + 1).min(last)
+    }
+
     fn row_mut(&mut self, row: usize) -> &mut [u8] {
         let at = (row - self.first_row) * self.raster.columns;
         &mut self.cells[at..at + self.raster.columns]
@@ -147,13 +154,12 @@ impl Band<'_> {
     fn fill(&mut self, rings: &[Vec<DVec2>], class: CoverClass) {
         let raster = self.raster;
         let (low, high) = bounds_m(rings);
-        let rows = self.rows(low.y, high.y);
-        if rows.is_empty() || high.x < raster.corner.x {
+        if self.rows_about(low.y, high.y).is_empty() || high.x < raster.corner.x {
             return;
         }
         let mut crossings: Vec<(usize, f64)> = Vec::new();
         for (a, b) in edges(rings) {
-            for row in self.rows(a.y.min(b.y), a.y.max(b.y)) {
+            for row in self.rows_about(a.y.min(b.y), a.y.max(b.y)) {
                 crossings.extend(crossing_x((a, b), raster.centre(0, row).y).map(|x| (row, x)));
             }
         }

@@ -70,6 +70,35 @@ fn rings_cover_the_cells_whose_centres_they_hold() {
 }
 
 #[test]
+fn corners_in_the_middle_of_a_row_lose_no_row() {
+    // -7,000 m and -6,187.5 m are middles of rows of cells of 41.67 m, but for rounding.
+    let field = synthetic::ridges(Grid::centred(125.0, 4, 4).unwrap(), 4);
+    let ring =
+        [(-1_000.0, -7_000.0), (1_000.0, -7_000.0), (1_500.0, -6_187.5), (1_000.0, -5_000.0), (-1_000.0, -5_000.0)];
+    let rings = vec![ring.map(|(x, z)| DVec2::new(x, z)).to_vec()];
+    let lake = Lake { name: String::new(), level_m: 0.0, rings: rings.clone() };
+    let cover = bake_cover(&field, &Lakes::new(vec![lake]), &Features::default(), &Climate::new(0.74, 1_500.0));
+    let raster = Raster::new(field.grid(), cells_per_step(field.grid()));
+    let (mut wet, mut held) = (0, 0);
+    for row in 0..raster.rows {
+        for column in 0..raster.columns {
+            let expected = inside(edges(&rings), raster.centre(column, row));
+            let cell = cover.cell(column as i64, row as i64);
+            // On an edge that runs along cells' middles, which side a middle is on is a matter of rounding.
+            let at = raster.centre(column, row);
+            let clear = edges(&rings).all(|(a, b)| {
+                let t = ((at - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+                at.distance(a.lerp(b, t)) > 1e-6
+            });
+            let is_wet = cell == CoverClass::Water as u8 | FROM_FEATURES;
+            assert!(is_wet == expected || !clear, "{at}");
+            (wet, held) = (wet + u32::from(is_wet), held + u32::from(expected));
+        }
+    }
+    assert!(held > 2_000 && wet.abs_diff(held) < 100, "{wet} of {held}");
+}
+
+#[test]
 fn threads_change_nothing() {
     let (field, climate) = world(5);
     let areas = vec![LandArea { cover: CoverClass::Broadleaf, rings: star(DVec2::new(900.0, -400.0), 11_000.0, 9) }];

@@ -40,6 +40,9 @@ pub enum Beam {
     Even,
     /// `colour` along the axis, `back` the other way; half as bright at the half angles.
     TwoSided,
+    /// `colour` all around but where a [`Beam::TwoSided`] light of the same axis and half angles shines: what goes past its
+    /// lenses.
+    Beside,
     /// `colour` above the axis' elevation and `back` below it, over a transition of this whole angle, radians.
     Slope {
         /// From one colour to the other.
@@ -118,6 +121,7 @@ impl LightPoint {
                 let (front, back) = (share(turn(1.0)), share(turn(-1.0)));
                 if front >= back { scaled(self.colour, front) } else { scaled(self.back, back) }
             }
+            Beam::Beside => scaled(self.colour, 1.0 - share(turn(1.0)).max(share(turn(-1.0)))),
             Beam::Slope { transition_rad } => {
                 let t = ((up_rad - axis_up_rad) / f64::from(transition_rad) + 0.5).clamp(0.0, 1.0) as f32;
                 let mixed: [f32; 3] = std::array::from_fn(|i| self.back[i] + t * (self.colour[i] - self.back[i]));

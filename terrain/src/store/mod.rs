@@ -6,6 +6,7 @@
 //! - `features.bin`: what lies on the ground but lakes ([`Features`]), postcard; absent if there is nothing
 //! - `cover.bin`: what covers it ([`Cover`]): cells along a post step as u32 little-endian, then the cells, deflated; absent
 //!   if nothing is known
+//! - `imagery.bin`: what photographs say of its colours ([`Imagery`]), postcard; absent without photographs
 //! - `masks.bin`: the block masks of the rings, as [`crate::block`] packs them; absent if none were made
 //!
 //! A world is written to a folder beside its place and renamed into it, so a place holds a whole world or what it held

@@ -120,3 +120,26 @@ fn cells_of_neighbouring_tiles_do_not_repeat() {
     let common = a.iter().filter(|p| b.iter().any(|q| q.at == p.at)).count();
     assert!(common * 20 < a.len() + b.len(), "{common} of {} and {}", a.len(), b.len());
 }
+
+#[test]
+fn where_nothing_may_grow_there_is_no_nursery_of_plants_and_without_forest_none_of_canopy() {
+    let grid = Grid::centred(200.0, 1, 1).unwrap();
+    let of = |class: Option<CoverClass>, one: CoverClass| {
+        let field = Arc::new(synthetic::ridges(grid, 3));
+        let mut landscape = Landscape::bare(field, [13.9, 27.8, 55.6], Climate::new(0.74, 1_500.0));
+        if let Some(class) = class {
+            let mut cells = vec![class as u8 | FROM_FEATURES; ((grid.columns() - 1) * (grid.rows() - 1)) as usize];
+            cells[77] = one as u8;
+            landscape.cover = Arc::new(Cover::new(&grid, 1, cells).unwrap());
+        }
+        let nursery = Nursery::new(Arc::new(landscape), 0.74);
+        (nursery.is_bare(), nursery.has_forest())
+    };
+    use CoverClass as C;
+    assert_eq!(of(None, C::Unknown), (true, false));
+    for bare in [C::Snow, C::Rock, C::Sand, C::Water, C::Paved, C::Unknown] {
+        assert_eq!(of(Some(bare), bare), (true, false), "{bare:?}");
+        assert_eq!(of(Some(bare), C::Grass), (false, false), "{bare:?} and a cell of grass");
+        assert_eq!(of(Some(bare), C::MixedForest), (false, true), "{bare:?} and a cell of forest");
+    }
+}

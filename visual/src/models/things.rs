@@ -141,6 +141,11 @@ impl Model {
         all.into_iter().find(|class| Self::from(*class) == self)
     }
 
+    /// Whether it is made 1 m high and scaled to its height; a turbine's is the hub's.
+    pub fn is_scaled_to_height(self) -> bool {
+        matches!(self, Self::Mast | Self::Tower | Self::Chimney | Self::WindTurbine | Self::PowerTower)
+    }
+
     /// Its shape: level 0 in detail, level 1 of a few boxes.
     pub fn mesh(self, level: usize) -> Mesh {
         let mut mesh = Mesh::default();

@@ -13,7 +13,7 @@ use crate::gpu::Gpu;
 use crate::shaders;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use terrain::edit::Changed;
 use terrain::near::{Change, NearTiles, Settings, TileIndex};
@@ -92,7 +92,7 @@ pub struct CanopyCounts {
 /// See the module.
 pub struct CanopyPass {
     tiles: NearTiles<Canopy>,
-    shown: HashMap<TileIndex, Shown>,
+    shown: BTreeMap<TileIndex, Shown>,
     cell_m: f64,
     reach_m: f64,
     pipeline: wgpu::RenderPipeline,
@@ -104,7 +104,7 @@ pub struct CanopyPass {
 }
 
 impl CanopyPass {
-    /// The canopy of a nursery; `None` where nothing can grow. `near_m`: the near zone's radius; `terrain`: layout of group 1.
+    /// The canopy of a nursery; `None` where there is no forest. `near_m`: the near zone's radius; `terrain`: layout of group 1.
     pub fn new(
         gpu: &Gpu,
         frame: &wgpu::BindGroupLayout,
@@ -114,7 +114,7 @@ impl CanopyPass {
         near_m: f64,
         wait: bool,
     ) -> Option<Self> {
-        if nursery.is_bare() {
+        if !nursery.has_forest() {
             return None;
         }
         let device = &gpu.device;
@@ -147,7 +147,7 @@ impl CanopyPass {
         });
         Some(Self {
             tiles,
-            shown: HashMap::new(),
+            shown: BTreeMap::new(),
             cell_m: canopy::cell_m(&grid),
             reach_m,
             pipeline: pipeline(device, &[frame, terrain, &crown_layout, &tile_layout], format),
@@ -243,6 +243,12 @@ impl CanopyPass {
             pass.set_index_buffer(shown.indices.slice(..), wgpu::IndexFormat::Uint16);
             pass.draw_indexed(0..shown.canopy.indices.len() as u32, 0, 0..1);
         }
+    }
+
+    /// Bytes on the GPU.
+    pub fn gpu_bytes(&self) -> usize {
+        let tiles = self.shown.values().map(|shown| (shown.vertices.size() + shown.indices.size()) as usize);
+        tiles.sum::<usize>() + self.table.size() as usize + pictures::crowns().iter().map(Vec::len).sum::<usize>()
     }
 
     /// What the first view's canopy is made of.

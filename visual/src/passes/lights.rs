@@ -13,9 +13,10 @@ use super::upload::filled;
 use crate::camera::View;
 use crate::gpu::Gpu;
 use crate::shaders;
+use crate::sky;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 use terrain::edit::Changed;
 use terrain::features::cover::Cover;
@@ -33,8 +34,6 @@ const BUDGET_BYTES: usize = 192 << 10;
 const THIN_FROM_M: f64 = 9_000.0;
 /// The least share of lamps that is left.
 const THINNEST: f64 = 1.0 / 12.0;
-/// Towns are lit below this elevation of the sun, radians: two degrees under the horizon.
-const TOWN_DARK_RAD: f64 = -2.0 * std::f64::consts::PI / 180.0;
 /// Airfields are, below this, radians, or where one sees less than [`AIRFIELD_DIM_M`].
 const AIRFIELD_DARK_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
 /// See [`AIRFIELD_DARK_RAD`]; metres.
@@ -56,7 +55,7 @@ pub struct Reach {
 pub struct Dark {
     /// All of an airfield's, not only those of its approach.
     pub airfields: bool,
-    /// Towns.
+    /// Some lamps of towns at least; the shader has the share of them.
     pub towns: bool,
     /// Share of their intensity that runway and approach lights are set to: all by day, 4 % in a clear night, more in
     /// poor visibility (stages after ICAO Annex 14, 5.3.1.10).
@@ -78,7 +77,7 @@ impl Dark {
         Self {
             directed: least.powf(night) as f32,
             airfields: sun_elevation_rad < AIRFIELD_DARK_RAD || visibility_m < AIRFIELD_DIM_M,
-            towns: sun_elevation_rad < TOWN_DARK_RAD,
+            towns: sky::lamps(sun_elevation_rad) > 0.0,
         }
     }
 }
@@ -136,6 +135,7 @@ impl LightInstance {
             Beam::Even => (0, light.half_rad[1], 0.0),
             Beam::TwoSided => (1, light.half_rad[1], 0.0),
             Beam::Slope { transition_rad } => (2, transition_rad, 0.0),
+            Beam::Beside => (4, light.half_rad[1], 0.0),
             Beam::Turning { period_s } => (3, light.half_rad[1], period_s),
         };
         let part = |share: f64| (share * 32_767.0).round() as i16;
@@ -182,7 +182,7 @@ impl Made {
 /// Tiles of one kind of lights and their buffers.
 struct Tiles {
     near: NearTiles<Made>,
-    shown: HashMap<TileIndex, Shown>,
+    shown: BTreeMap<TileIndex, Shown>,
 }
 
 struct Shown {
@@ -193,7 +193,7 @@ struct Shown {
 }
 
 /// Lights of airfields with their ranks, by tile.
-type ByTile = HashMap<(i32, i32), Vec<(LightPoint, f32)>>;
+type ByTile = BTreeMap<(i32, i32), Vec<(LightPoint, f32)>>;
 
 fn airfields_maker(area: Area, lights: Arc<ByTile>) -> impl Fn(TileIndex) -> Made + Send + 'static {
     move |tile| Made::new(&area, lights.get(&(tile.x, tile.z)).cloned().unwrap_or_default())
@@ -217,7 +217,7 @@ fn towns_maker(
 impl Tiles {
     fn new(grid: &Grid, reach_m: f64, wait: bool, make: impl Fn(TileIndex) -> Made + Send + 'static) -> Self {
         let settings = Settings { side_m: SIDE_M, reach_m, budget_bytes: BUDGET_BYTES, wait };
-        Self { near: NearTiles::new(grid, settings, Made::bytes, make), shown: HashMap::new() }
+        Self { near: NearTiles::new(grid, settings, Made::bytes, make), shown: BTreeMap::new() }
     }
 
     fn follow(&mut self, gpu: &Gpu, eye: DVec2, speed_mps: f64) {
@@ -408,6 +408,12 @@ impl Lights {
             pass.set_vertex_buffer(0, buffer.slice(..));
             pass.draw(0..4, 0..*count);
         }
+    }
+
+    /// Bytes on the GPU.
+    pub fn gpu_bytes(&self) -> usize {
+        let tiles = self.airfields.iter().chain(&self.towns).flat_map(|tiles| tiles.shown.values());
+        tiles.map(|tile| tile.buffer.size() as usize).sum::<usize>() + self.uniforms.size() as usize
     }
 
     /// Lights that the last prepared views send, for reports.

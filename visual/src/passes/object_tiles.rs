@@ -78,9 +78,9 @@ pub fn made(index: &ObjectIndex, grid: &Grid, tile: TileIndex, side_m: f64) -> T
         } else if let Some(thing) = thing(index, object, anchor_post, from) {
             let size_m = (object.high - object.low).length();
             made.largest_m = made.largest_m.max(1.5 * size_m);
-            // Blades, arms and aerials reach beyond the box that shells meet.
-            made.low -= DVec3::splat(0.3 * size_m);
-            made.high += DVec3::splat(0.3 * size_m);
+            // Blades, arms and aerials reach beyond the box that shells meet: a turbine's blades by half its height.
+            made.low -= DVec3::splat(0.55 * size_m);
+            made.high += DVec3::splat(0.55 * size_m);
             made.things.push(thing);
         }
     }

@@ -16,8 +16,9 @@ use super::terrain::eye_uniforms;
 use super::upload::{Growing, filled};
 use crate::camera::{DEPTH_COMPARE, Frustum, View};
 use crate::gpu::Gpu;
+use crate::models::glb::{self, Fit};
 use crate::models::things::{MODELS, Model};
-use crate::models::{Mesh, Vertex, glb};
+use crate::models::{Mesh, Vertex};
 use crate::shaders;
 use bytemuck::{Pod, Zeroable};
 use glam::{DQuat, DVec2, DVec3, Vec3};
@@ -194,7 +195,8 @@ impl Objects {
 
     /// Bytes on the GPU.
     pub fn gpu_bytes(&self) -> usize {
-        self.gpu_bytes + (self.vertices.size() + self.indices.size()) as usize
+        let views = self.views.iter().map(|view| view.instances.bytes());
+        views.sum::<usize>() + self.gpu_bytes + (self.vertices.size() + self.indices.size()) as usize
     }
 
     /// Streams tiles after the eye.
@@ -380,37 +382,43 @@ fn shapes(gpu: &Gpu, own: &[(Model, Mesh)]) -> (Vec<Shape>, wgpu::Buffer, wgpu::
     let (mut vertices, mut indices): (Vec<Vertex>, Vec<u32>) = Default::default();
     let mut shapes = Vec::with_capacity(MODELS.len());
     for model in MODELS {
-        let replaced = own.iter().find(|(of, _)| *of == model).map(|(_, mesh)| match model.placed() {
-            // As long as the thing really is.
-            Some(class) => {
-                let around = shape::bounds(shape::placed(class));
-                let size = around.high - around.low;
-                glb::fitted(mesh.clone(), size.x.max(size.z) as f32)
-            }
-            None => mesh.clone(),
-        });
-        let mut size_m = 0.0;
-        let levels = [0, 1].map(|level| {
-            let mut mesh = match &replaced {
-                Some(mesh) if level == 0 => mesh.clone(),
-                _ => model.mesh(level),
-            };
-            let (low, high) = mesh.bounds_m();
-            if level == 0 {
-                size_m = f64::from((high - low).length());
-            }
+        let replaced = own.iter().find(|(of, _)| *of == model).map(|(_, mesh)| in_place_of(model, mesh.clone()));
+        let is_own = replaced.is_some();
+        let whole = replaced.unwrap_or_else(|| model.mesh(0));
+        let (low, high) = whole.bounds_m();
+        let size_m = f64::from((high - low).length());
+        let mut add = |mut mesh: Mesh| {
             mesh.seal(size_m as f32, model.number() as u32);
-            let first = indices.len() as u32;
-            let base = vertices.len() as i32;
+            let (first, base) = (indices.len() as u32, vertices.len() as i32);
             vertices.extend_from_slice(&mesh.vertices);
             indices.extend_from_slice(&mesh.indices);
             (first..indices.len() as u32, base)
-        });
-        shapes.push(Shape { levels, size_m });
+        };
+        let near = add(whole);
+        // A shape of a world's own keeps its looks from afar.
+        let far = if is_own { near.clone() } else { add(model.mesh(1)) };
+        shapes.push(Shape { levels: [near, far], size_m });
     }
     let vertices = filled(gpu, "shapes", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX);
     let indices = filled(gpu, "shapes", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
     (shapes, vertices, indices)
+}
+
+/// A shape of a world's own in the units of the one that it replaces: as long as a placed thing really is, as high as a mast
+/// that is scaled to its height. What has neither keeps its size.
+fn in_place_of(model: Model, mesh: Mesh) -> Mesh {
+    match model.placed() {
+        Some(class) => {
+            let around = shape::bounds(shape::placed(class));
+            let size = around.high - around.low;
+            glb::fitted(mesh, Fit::LengthM(size.x.max(size.z) as f32))
+        }
+        None if model.is_scaled_to_height() => {
+            let (low, high) = model.mesh(0).bounds_m();
+            glb::fitted(mesh, Fit::HeightM(high.y - low.y))
+        }
+        None => mesh,
+    }
 }
 
 fn pipeline(
@@ -460,4 +468,33 @@ fn pipeline(
         multiview_mask: None,
         cache: None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::Paint;
+
+    #[test]
+    fn own_shapes_are_as_large_as_those_that_they_replace() {
+        let mut tall = Mesh::default();
+        let grey = Paint::matt(0.3, 0.3, 0.3);
+        tall.cuboid(Vec3::new(-7.0, 20.0, -5.0), Vec3::new(7.0, 120.0, 5.0), grey, grey);
+        let size = |mesh: &Mesh| {
+            let (low, high) = mesh.bounds_m();
+            assert!(low.y.abs() < 1e-5, "stands on its foot");
+            high - low
+        };
+        for model in MODELS {
+            let (is, was) = (size(&in_place_of(model, tall.clone())), model.mesh(0).bounds_m());
+            // Placed things and masts alike; f32 of sizes below 200 m.
+            if model.is_scaled_to_height() {
+                assert!((is.y - (was.1.y - was.0.y)).abs() < 1e-5 && is.y < 2.0, "{model:?}: {is}");
+            } else if let Some(class) = model.placed() {
+                let around = shape::bounds(shape::placed(class));
+                let long_m = (around.high - around.low).x.max((around.high - around.low).z) as f32;
+                assert!((is.x - long_m).abs() < 1e-4, "{model:?}: {is}");
+            }
+        }
+    }
 }

@@ -67,6 +67,11 @@ impl Particles {
         self.views.get(view_index).map_or(0, |prepared| prepared.count)
     }
 
+    /// Bytes on the GPU.
+    pub fn gpu_bytes(&self) -> usize {
+        self.views.iter().map(|prepared| prepared.instances.bytes()).sum()
+    }
+
     /// Works out and uploads a view's sprites at a moment.
     pub fn prepare(&mut self, gpu: &Gpu, view_index: usize, view: &View, time_s: f64) {
         while self.views.len() <= view_index {

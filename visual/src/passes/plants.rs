@@ -10,7 +10,7 @@
 
 use super::TargetFormat;
 use super::bindings::layout;
-use super::plants_kinds::{COMMON, MODEL_ATTRIBUTES, ModelVertex, Place, common, models};
+use super::plants_kinds::{self, COMMON, MODEL_ATTRIBUTES, ModelVertex, Place, common, models};
 use super::plants_seen::{self, MESH_M, Near, Reaches, Seen, Stand};
 use super::upload::{Growing, empty, filled};
 use crate::camera::View;
@@ -234,6 +234,13 @@ impl Plants {
             pass.set_pipeline(&self.pipelines.far);
             pass.draw(3 * view.far.start..3 * view.far.end, 0..1);
         }
+    }
+
+    /// Bytes on the GPU.
+    pub fn gpu_bytes(&self) -> usize {
+        let shared = self.quads.size() + self.model_vertices.size() + self.model_indices.size();
+        let views = self.views.iter().map(|view| view.stands.bytes() + view.near.bytes());
+        views.sum::<usize>() + shared as usize + plants_kinds::common_bytes()
     }
 
     /// What the first view's plants were made of.

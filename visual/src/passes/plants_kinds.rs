@@ -96,6 +96,11 @@ pub(super) fn common(gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> wgpu::BindGro
     })
 }
 
+/// Bytes on the GPU of species and pictures.
+pub(super) fn common_bytes() -> usize {
+    pictures::all().iter().flatten().map(Vec::len).sum::<usize>() + MOST_SPECIES * size_of::<SpeciesEntry>()
+}
+
 /// Indices and first vertex of a shape's model.
 pub(super) type Place = (Range<u32>, i32);
 

@@ -37,6 +37,11 @@ impl Growing {
         !fits
     }
 
+    /// Bytes on the GPU.
+    pub(super) fn bytes(&self) -> usize {
+        self.buffer.as_ref().map_or(0, |buffer| buffer.size() as usize)
+    }
+
     /// The buffer last written, if any was.
     pub(super) fn buffer(&self) -> Option<&wgpu::Buffer> {
         self.buffer.as_ref()

@@ -27,8 +27,8 @@ pub struct DrawnRunway {
     pub designators: Option<[String; 2]>,
     /// What it is made of.
     pub surface: RunwaySurface,
-    /// Whether it has lights.
-    pub lit: bool,
+    /// Whether it has lights, if stated.
+    pub lit: Option<bool>,
     /// Features that it was made of.
     pub features: usize,
 }
@@ -80,29 +80,44 @@ pub fn ends_of_ring(ring: &[DVec2]) -> Option<([DVec2; 2], f64)> {
     best.map(|(_, ends, width_m)| (ends, width_m))
 }
 
-/// Runways that are drawn in pieces become whole: pieces of the same designators that end at the same point.
+/// Runways that are drawn in pieces become whole, whatever the order: pieces of the same designators that end at the same
+/// point. The whole has the place of its first piece, and lights if any piece has.
 pub fn merge_pieces(runways: &mut Vec<DrawnRunway>) {
-    /// Nodes that both pieces have are the same point but for rounding.
-    const SAME_M: f64 = 1.0;
-    let mut at = 0;
-    while at < runways.len() {
-        let piece = runways[at].clone();
-        let joined = runways[..at].iter_mut().find_map(|whole| {
-            let named = whole.designators.is_some() && whole.designators == piece.designators;
-            let pairs = [(0, 0), (0, 1), (1, 0), (1, 1)];
-            let meet = |(i, j): &(usize, usize)| whole.ends[*i].distance(piece.ends[*j]) < SAME_M;
-            let (i, j) = pairs.into_iter().find(|pair| named && meet(pair))?;
-            whole.ends[i] = piece.ends[1 - j];
-            whole.features += piece.features;
-            whole.width_m = whole.width_m.or(piece.width_m);
-            whole.lit |= piece.lit;
-            Some(())
-        });
-        if joined.is_some() {
-            runways.remove(at);
-        } else {
-            at += 1;
+    let mut done: Vec<DrawnRunway> = Vec::with_capacity(runways.len());
+    for mut whole in runways.drain(..) {
+        let mut place = done.len();
+        // What has grown may meet others.
+        while let Some((at, joined)) = done.iter().enumerate().find_map(|(at, other)| Some((at, other.joined(&whole)?)))
+        {
+            done.remove(at);
+            place = place.min(at);
+            whole = joined;
         }
+        done.insert(place.min(done.len()), whole);
+    }
+    *runways = done;
+}
+
+impl DrawnRunway {
+    /// With another piece of it; `None` if that is none.
+    fn joined(&self, piece: &Self) -> Option<Self> {
+        /// Nodes that both pieces have are the same point but for rounding.
+        const SAME_M: f64 = 1.0;
+        if self.designators.is_none() || self.designators != piece.designators {
+            return None;
+        }
+        let meet = |(i, j): &(usize, usize)| self.ends[*i].distance(piece.ends[*j]) < SAME_M;
+        let (i, j) = [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter().find(meet)?;
+        let mut whole = self.clone();
+        whole.ends[i] = piece.ends[1 - j];
+        whole.features += piece.features;
+        whole.width_m = self.width_m.or(piece.width_m);
+        whole.lit = match (self.lit, piece.lit) {
+            (Some(one), Some(other)) => Some(one || other),
+            (one, other) => one.or(other),
+        };
+        // Pieces of equal ends are one runway drawn twice, and both together have no length.
+        (whole.length_m() > self.length_m().max(piece.length_m())).then_some(whole)
     }
 }
 
@@ -128,11 +143,25 @@ mod tests {
             width_m: None,
             designators: Some(["09".into(), "27".into()]),
             surface: RunwaySurface::Asphalt,
-            lit: false,
+            lit: None,
             features: 1,
         };
         let mut runways = vec![piece(0.0, 300.0), piece(2_000.0, 300.0), piece(5_000.0, 6_000.0)];
         merge_pieces(&mut runways);
         assert_eq!((runways.len(), runways[0].length_m(), runways[0].features), (2, 2_000.0, 2));
+        // In any order; and of what the pieces say of lights, yes counts most and nothing least.
+        let parts = [(0.0, 300.0, None), (300.0, 600.0, Some(true)), (600.0, 900.0, Some(false))];
+        for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+            let mut runways =
+                order.map(|at| DrawnRunway { lit: parts[at].2, ..piece(parts[at].0, parts[at].1) }).to_vec();
+            runways.insert(1, piece(5_000.0, 6_000.0));
+            merge_pieces(&mut runways);
+            let [whole, alone] = runways.as_slice() else { panic!("{order:?}: {runways:?}") };
+            assert_eq!((whole.length_m(), whole.features, whole.lit), (900.0, 3, Some(true)), "{order:?}");
+            assert_eq!((alone.length_m(), alone.lit), (1_000.0, None));
+        }
+        let mut twice = vec![piece(0.0, 300.0), piece(300.0, 0.0)];
+        merge_pieces(&mut twice);
+        assert_eq!(twice.len(), 2);
     }
 }

@@ -293,6 +293,7 @@ fn of_drawn(drawn: DrawnRunway, projection: &Projection) -> Runway {
         23.0
     };
     let mut ends = drawn.ends;
+    let lit = drawn.lit.unwrap_or_else(|| assumed_lit(drawn.length_m(), drawn.surface));
     let designators = match drawn.designators {
         Some(designators) => {
             let off = |text: &str| heading_of(text).map_or(90.0, |named| angle_between_deg(named, heading_deg));
@@ -308,7 +309,7 @@ fn of_drawn(drawn: DrawnRunway, projection: &Projection) -> Runway {
         width_m: drawn.width_m.unwrap_or(by_length),
         designators,
         surface: drawn.surface,
-        lit: drawn.lit,
+        lit,
         from: Origin::Stated,
     }
 }
@@ -344,8 +345,13 @@ fn assumed(stated: &StatedRunway, at: DVec2, aside_m: f64, level_m: f64, from: O
     let heading_deg = true_heading_deg(ends, site.projection);
     let named = stated.designators.iter().all(|one| !one.is_empty());
     let designators = if named { stated.designators.clone() } else { designators_of(heading_deg) };
-    let lit = stated.length_m >= 2_000.0;
+    let lit = assumed_lit(stated.length_m, stated.surface);
     Runway { ends, width_m: stated.width_m as f32, designators, surface: stated.surface, lit, from }
+}
+
+/// Whether a runway has lights where nothing says: one for jets, paved and 2,000 m long or more, does.
+fn assumed_lit(length_m: f64, surface: RunwaySurface) -> bool {
+    length_m >= 2_000.0 && matches!(surface, RunwaySurface::Asphalt | RunwaySurface::Concrete)
 }
 
 /// Most that the ground along a line departs from a level; a lake or no ground counts as a kilometre for each place.
@@ -485,9 +491,15 @@ mod tests {
                 width_m: None,
                 designators: Some(names.map(str::to_owned)),
                 surface: RunwaySurface::Asphalt,
-                lit: true,
+                lit: None,
                 features: 1,
             };
+            // 1,800 m that say nothing of lights have none; 2,200 m have unless they say no, and grass has not.
+            let long = DrawnRunway { ends: east.map(|end| end * (11.0 / 9.0)), ..drawn.clone() };
+            let lit = |drawn: &DrawnRunway| of_drawn(drawn.clone(), &projection).lit;
+            assert!(lit(&long) && !lit(&drawn) && lit(&DrawnRunway { lit: Some(true), ..drawn.clone() }));
+            assert!(!lit(&DrawnRunway { lit: Some(false), ..long.clone() }));
+            assert!(!lit(&DrawnRunway { surface: RunwaySurface::Grass, ..long }));
             let runway = of_drawn(drawn, &projection);
             assert_eq!((runway.ends[0], runway.width_m), (first, 45.0));
         }

@@ -1,10 +1,11 @@
 //! GeoJSON (RFC 7946): geometries in longitude and latitude, properties as tags.
 //!
-//! Keys are those of OpenStreetMap, or Natural Earth's `featurecla`. A polygon without any that means something is a
-//! lake, with the optional properties `name` and `level_m`.
+//! Keys are those of OpenStreetMap, Natural Earth's `featurecla` or Geofabrik's `fclass`. A polygon that has no property
+//! but a name, a number, a region and `level_m` is a lake.
 
-use super::raw::{Element, Polygon, RawFeature, Shape, Tags, is_place, ring_of};
-use super::{MAX_POINTS, natural_earth};
+use super::MAX_POINTS;
+use super::raw::{Element, Polygon, RawFeature, Shape, Tags, is_place, ring_of, says_what};
+use super::schemes::{geofabrik, natural_earth};
 use crate::bake::raster::Unreadable;
 use geojson::{GeoJson, GeometryValue, JsonValue, Position};
 use glam::DVec2;
@@ -23,14 +24,16 @@ pub fn read(text: &str) -> Result<Vec<RawFeature>, Unreadable> {
     let mut points = 0;
     let mut read = Vec::with_capacity(features.len());
     for feature in features {
-        let tags = tags(feature.properties.as_ref())?;
+        let mut tags = tags(feature.properties.as_ref())?;
         let shape = match feature.geometry {
             Some(geometry) => shape(&geometry.value, &mut points)?,
             None => Shape::Broken("no geometry"),
         };
         let element = if matches!(shape, Shape::Point(_)) { Element::Node } else { Element::Way };
+        geofabrik(&mut tags, matches!(shape, Shape::Polygon(_)));
         let mut raw = RawFeature::new(tags, element, shape);
-        raw.lake_by_default = true;
+        let said = |(key, value): (&String, &JsonValue)| says_what(key) && !value.is_null();
+        raw.lake_by_default = !feature.properties.iter().flatten().any(said);
         read.push(raw);
     }
     Ok(read)

@@ -21,6 +21,7 @@ mod osm_xml;
 mod place;
 mod raw;
 mod relations;
+mod schemes;
 mod shapefile;
 mod tags;
 mod waters;
@@ -28,7 +29,6 @@ mod waters;
 use super::bake_world::Input;
 use super::raster::Unreadable;
 use flate2::read::MultiGzDecoder;
-use raw::Tags;
 use std::io::Read;
 use std::path::Path;
 
@@ -67,10 +67,9 @@ pub fn open(input: &Input) -> Result<Content, Unreadable> {
         Input::Embedded(bytes) => read(bytes.content, None, None),
         Input::File(path) => {
             let bytes = bounded_file(path)?;
-            let beside = |extension: &str| bounded_file(&path.with_extension(extension)).ok();
             if shapefile::looks_like(&bytes) {
-                let prj = beside("prj").map(|prj| String::from_utf8_lossy(&prj).into_owned());
-                return read(&bytes, beside("dbf").as_deref(), prj.as_deref());
+                let prj = beside(path, ["prj", "PRJ"])?.map(|prj| String::from_utf8_lossy(&prj).into_owned());
+                return read(&bytes, beside(path, ["dbf", "DBF"])?.as_deref(), prj.as_deref());
             }
             read(&bytes, None, None)
         }
@@ -84,6 +83,9 @@ pub fn open(input: &Input) -> Result<Content, Unreadable> {
 pub fn read(bytes: &[u8], dbf: Option<&[u8]>, prj: Option<&str>) -> Result<Content, Unreadable> {
     if bytes.starts_with(&[0x1f, 0x8b]) {
         let inner = bounded(MultiGzDecoder::new(bytes))?;
+        if shapefile::looks_like(&inner) {
+            return Err(Unreadable::new("a shapefile outside a gzip, its .dbf and .prj beside it", "one inside"));
+        }
         return read_plain(&inner, dbf, prj);
     }
     read_plain(bytes, dbf, prj)
@@ -117,27 +119,21 @@ fn read_plain(bytes: &[u8], dbf: Option<&[u8]>, prj: Option<&str>) -> Result<Con
         return Ok(Content { features: Vec::new(), airfields: airfield_csv::read(text)? });
     }
     Err(Unreadable::new(
-        "OSM PBF, OSM XML, GeoJSON, a shapefile (.shp) or a CSV of airfields, perhaps in a gzip",
+        "OSM PBF, OSM XML, GeoJSON or a CSV of airfields, perhaps in a gzip, or a shapefile (.shp)",
         format!("{} bytes that begin with {:02x?}", bytes.len(), &bytes[..bytes.len().min(8)]),
     ))
 }
 
-/// What Natural Earth (naturalearthdata.com) calls a thing, as tags.
-fn natural_earth(tags: &mut Tags, key: &str, value: &str) {
-    if key != "featurecla" {
-        return;
-    }
-    match value {
-        "River" | "Lake Centerline" | "Canal" => {
-            tags.push("waterway", if value == "Canal" { "canal" } else { "river" })
+/// What lies beside a file under one of the endings; `None` if nothing does.
+fn beside(path: &Path, endings: [&str; 2]) -> Result<Option<Vec<u8>>, Unreadable> {
+    for ending in endings {
+        match std::fs::File::open(path.with_extension(ending)) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
+            Err(error) => return Err(Unreadable::new(format!("a readable .{ending} beside it"), error.to_string())),
+            Ok(file) => return bounded(file).map(Some),
         }
-        "Road" => tags.push("highway", "primary"),
-        "Railroad" => tags.push("railway", "rail"),
-        "Urban area" => tags.push("landuse", "residential"),
-        "Glaciated areas" => tags.push("natural", "glacier"),
-        "Lake" | "Alkaline Lake" | "Reservoir" => tags.push("natural", "water"),
-        _ => {}
     }
+    Ok(None)
 }
 
 fn bounded_file(path: &Path) -> Result<Vec<u8>, Unreadable> {

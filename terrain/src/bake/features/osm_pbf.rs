@@ -64,7 +64,7 @@ fn take(data: &mut OsmData, element: &Element<'_>) -> Result<(), Unreadable> {
                 .map(|member| (member.member_id, member.role().is_ok_and(|role| role == "inner")))
                 .collect();
             let tagged = number > usize::from(tags.get("type").is_some());
-            data.relation(Relation { tags, tagged, ways })
+            data.relation(Relation { id: relation.id(), tags, tagged, ways })
         }
     }
 }

@@ -18,7 +18,7 @@ enum Open {
     Nothing,
     Node { id: i64, lon: i64, lat: i64 },
     Way { id: i64, nodes: Vec<i64> },
-    Relation { ways: Vec<(i64, bool)> },
+    Relation { id: i64, ways: Vec<(i64, bool)> },
 }
 
 /// Reads a file.
@@ -36,13 +36,17 @@ pub fn read(bytes: &[u8]) -> Result<OsmData, Unreadable> {
             Event::Start(start) | Event::Empty(start) => {
                 match start.name().as_ref() {
                     "osm" => root = true,
+                    "node" | "way" | "relation" if is_deleted(start)? => open = Open::Nothing,
                     "node" => {
                         let [id, lon, lat] = attributes(start, ["id", "lon", "lat"])?;
                         open = Open::Node { id: whole(&id)?, lon: units(&lon)?, lat: units(&lat)? };
                     }
                     "way" => open = Open::Way { id: whole(&attributes(start, ["id"])?[0])?, nodes: Vec::new() },
-                    "relation" => open = Open::Relation { ways: Vec::new() },
-                    "tag" => {
+                    "relation" => {
+                        open = Open::Relation { id: whole(&attributes(start, ["id"])?[0])?, ways: Vec::new() }
+                    }
+                    // Those of areas, changesets and what is deleted are nobody's.
+                    "tag" if !matches!(open, Open::Nothing) => {
                         let [key, value] = attributes(start, ["k", "v"])?;
                         tags.push(&key, &value);
                         number += 1;
@@ -53,7 +57,7 @@ pub fn read(bytes: &[u8]) -> Result<OsmData, Unreadable> {
                         }
                     }
                     "member" => {
-                        if let Open::Relation { ways } = &mut open {
+                        if let Open::Relation { ways, .. } = &mut open {
                             let [kind, id, role] = attributes(start, ["type", "ref", "role"])?;
                             if kind == "way" {
                                 ways.push((whole(&id)?, role == "inner"));
@@ -84,11 +88,17 @@ fn close(data: &mut OsmData, open: &mut Open, tags: &mut Tags, number: &mut usiz
         Open::Nothing => Ok(()),
         Open::Node { id, lon, lat } => data.node(id, lon, lat, tags),
         Open::Way { id, nodes } => data.way(id, tags, number > 0, nodes.into_iter()),
-        Open::Relation { ways } => {
+        Open::Relation { id, ways } => {
             let tagged = number > usize::from(tags.get("type").is_some());
-            data.relation(Relation { tags, tagged, ways })
+            data.relation(Relation { id, tags, tagged, ways })
         }
     }
+}
+
+/// Whether an element is there no longer: an editor's file has it to be deleted, or a history after it was.
+fn is_deleted(start: &BytesStart<'_>) -> Result<bool, Unreadable> {
+    let [action, visible] = attributes(start, ["action", "visible"])?;
+    Ok(action == "delete" || visible == "false")
 }
 
 /// Attributes by name, empty where absent.
@@ -138,6 +148,20 @@ mod tests {
         assert_eq!((lines.len(), lines[0].len(), lines[0][1].y), (1, 2, 42.1));
         let Shape::Polygon(polygon) = &features[2].shape else { panic!("{:?}", features[2]) };
         assert_eq!((polygon.outers.len(), polygon.outers[0].len(), polygon.inners.len()), (1, 3, 0));
+    }
+
+    #[test]
+    fn tags_stay_with_their_element_and_what_is_deleted_is_not_there() {
+        let text = r#"<osm version="0.6"><area id="1"><tag k="building" v="yes"/></area>
+            <node id="1" lat="42.0" lon="1.5"/><node id="2" lat="42.1" lon="1.5"/>
+            <node id="3" visible="false"><tag k="man_made" v="mast"/></node>
+            <way id="7"><nd ref="1"/><nd ref="2"/><tag k="highway" v="track"/></way>
+            <way id="8" action="delete"><nd ref="1"/><nd ref="2"/><tag k="highway" v="path"/></way>
+            <way id="9"><nd ref="2"/><nd ref="1"/><tag k="highway" v="steps"/></way></osm>"#;
+        let features = read(text.as_bytes()).unwrap().features().unwrap();
+        let roads: Vec<Option<&str>> = features.iter().map(|feature| feature.tags.get("highway")).collect();
+        assert_eq!(roads, [Some("track"), Some("steps")]);
+        assert!(features.iter().all(|feature| feature.tags.get("building").is_none()));
     }
 
     #[test]

@@ -9,6 +9,7 @@ use super::measure::metres;
 use super::raw::{AreaOf, Element, Polygon, RawFeature, Shape, Tags, ring_of};
 use super::tags::{Meaning, is_paved, meanings};
 use super::waters::OpenWater;
+use crate::block::overlay::ribbon::MOST_WIDTH_M;
 use crate::features::cover::CoverClass;
 use crate::features::model::{Building, Features, LandArea, Mast, MastClass, Origin, PowerLine, Road, Waterway};
 use crate::grid::Grid;
@@ -24,6 +25,10 @@ const LEAST_BUILDING_M2: f64 = 1.0;
 
 /// Most runways: they are compared with each other.
 const MAX_RUNWAYS: usize = 10_000;
+
+/// Most points of a building's outline and of a line or outline of an airfield: all are looked at for each place about
+/// them. OpenStreetMap allows 2,000 to a way.
+const MAX_POINTS: usize = 20_000;
 
 const OUTSIDE: &str = "outside the world";
 
@@ -53,12 +58,14 @@ struct Placer<'a> {
     /// Where power lines have points, in 1e-7 degrees.
     power_points: HashSet<[i64; 2]>,
     towers: Vec<(DVec2, f32)>,
+    /// Elements with a number that were met: files of neighbouring regions share what crosses the border.
+    met: HashSet<(Element, i64)>,
 }
 
 /// Lays features on a world.
 pub fn place(features: &[RawFeature], projection: &Projection, grid: &Grid) -> Placed {
-    let (placed, power_points, towers) = Default::default();
-    let mut placer = Placer { projection, grid, placed, power_points, towers };
+    let (placed, power_points, towers, met) = Default::default();
+    let mut placer = Placer { projection, grid, placed, power_points, towers, met };
     for feature in features {
         placer.take(feature);
     }
@@ -73,10 +80,23 @@ impl Placer<'_> {
             let (kind, meaning) = unnamed(feature);
             all.push((kind, meaning));
         }
+        // A coastline may carry the sea of its whole file.
+        let met = feature.id.is_some_and(|id| !self.met.insert((feature.element, id)));
+        let again = met && !feature.tags.is("natural", "coastline");
         for (kind, meaning) in all {
+            if again {
+                self.placed.counts.skip(kind, "again in another file");
+                continue;
+            }
             match meaning.and_then(|meaning| self.make(feature, kind, &meaning)) {
-                Ok(Book::Keep) => self.placed.counts.keep(kind),
-                Ok(Book::Later) => {}
+                Ok(book) => {
+                    if let Some(note) = feature.note {
+                        self.placed.counts.note(kind, note);
+                    }
+                    if matches!(book, Book::Keep) {
+                        self.placed.counts.keep(kind);
+                    }
+                }
                 Err(reason) => self.placed.counts.skip(kind, reason),
             }
         }
@@ -113,11 +133,18 @@ impl Placer<'_> {
                 let lines = self.lines(feature)?.into_iter();
                 self.placed.features.waterways.extend(lines.map(|line| Waterway { class, width_m, tunnel, line }));
                 self.placed.counts.note(kind, format!("width {}", word(from)));
+                if f64::from(width_m) > MOST_WIDTH_M {
+                    self.placed.counts.note(kind, format!("drawn {MOST_WIDTH_M} m wide, the most of a line"));
+                }
             }
             Meaning::Water { still } => self.water(feature, kind, still)?,
             Meaning::Area(cover) => self.area(feature, kind, cover)?,
             Meaning::Building(class, height_m, height_from) => {
                 let polygon = self.polygon(feature, kind, 0.0)?;
+                few_points(&polygon.outers)?;
+                if !polygon.inners.is_empty() {
+                    self.placed.counts.note(kind, "courtyard left out");
+                }
                 let outlines = polygon.outers.into_iter().map(counter_clockwise);
                 let large: Vec<Vec<DVec2>> =
                     outlines.filter(|ring| signed_area_m2(ring).abs() >= LEAST_BUILDING_M2).collect();
@@ -175,11 +202,15 @@ impl Placer<'_> {
                     let (low, high) = text.split_once('/')?;
                     Some([low, high].map(|one| one.trim().chars().take(3).collect::<String>()))
                 });
-                let drawn = self.lines(feature).ok().and_then(|lines| lines.into_iter().next());
+                let drawn = match feature.shape {
+                    Shape::Polygon(_) => None,
+                    _ => self.lines(feature)?.into_iter().next(),
+                };
                 let outline = match &drawn {
                     Some(line) if line.first() != line.last() => None,
                     _ => Some(self.polygon(feature, kind, 0.0)?.outers.remove(0)),
                 };
+                few_points(drawn.iter().chain(&outline))?;
                 let (ends, drawn_m) = match (outline, drawn) {
                     (Some(outline), _) => ends_of_ring(&outline).map(|(ends, width_m)| (ends, Some(width_m as f32))),
                     (None, Some(line)) => line.first().zip(line.last()).map(|(a, b)| ([*a, *b], None)),
@@ -189,7 +220,7 @@ impl Placer<'_> {
                 let stated = tags.get("width").and_then(metres).map(|width_m| width_m as f32);
                 let sane = |width_m: &f32| (5.0..=200.0).contains(width_m);
                 let width_m = stated.filter(sane).or(drawn_m.filter(sane));
-                let lit = tags.says("lit");
+                let lit = tags.get("lit").map(|_| tags.says("lit"));
                 let runway = DrawnRunway { ends, width_m, designators, surface, lit, features: 1 };
                 if !(50.0..=8_000.0).contains(&runway.length_m()) {
                     return Err("not 50 to 8,000 m long".into());
@@ -201,10 +232,12 @@ impl Placer<'_> {
             }
             Meaning::Taxiway(width_m) => {
                 let lines = self.lines(feature)?;
+                few_points(&lines)?;
                 self.placed.aeroways.taxiways.push((lines, width_m));
             }
             Meaning::Apron => {
                 let polygon = self.polygon(feature, kind, 0.0)?;
+                few_points(&polygon.outers)?;
                 self.placed.aeroways.aprons.push(polygon.outers);
             }
             _ => {
@@ -372,9 +405,7 @@ pub fn to_world(projection: &Projection, lon_lat: DVec2) -> Option<DVec2> {
 
 /// What a feature is whose tags say nothing known.
 fn unnamed(feature: &RawFeature) -> (Kind, Result<Meaning, String>) {
-    const SAY_WHAT: [&str; 10] =
-        ["highway", "railway", "waterway", "natural", "landuse", "leisure", "amenity", "man_made", "power", "aeroway"];
-    if feature.lake_by_default && !SAY_WHAT.iter().any(|key| feature.tags.get(key).is_some()) {
+    if feature.lake_by_default {
         let meaning = match feature.shape {
             Shape::Polygon(_) => Ok(Meaning::Water { still: true }),
             Shape::Broken(reason) => Err(reason.into()),
@@ -388,6 +419,11 @@ fn unnamed(feature: &RawFeature) -> (Kind, Result<Meaning, String>) {
         "no kind that is drawn"
     };
     (Kind::Others, Err(reason.into()))
+}
+
+/// Refuses lines of more than [`MAX_POINTS`].
+fn few_points<'a>(lines: impl IntoIterator<Item = &'a Vec<DVec2>>) -> Result<(), String> {
+    if lines.into_iter().any(|line| line.len() > MAX_POINTS) { Err("more than 20,000 points".into()) } else { Ok(()) }
 }
 
 fn under(tags: &Tags) -> bool {
@@ -436,52 +472,5 @@ fn angle_rad(a: Geodetic, b: Geodetic) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn world() -> (Projection, Grid) {
-        (Projection::new(Geodetic::from_degrees(42.0, 78.0)).unwrap(), Grid::centred(200.0, 2, 2).unwrap())
-    }
-
-    fn feature(pairs: &[(&str, &str)], points: &[(f64, f64)]) -> RawFeature {
-        let mut tags = Tags::default();
-        pairs.iter().for_each(|(key, value)| tags.push(key, value));
-        let line = points.iter().map(|(lon, lat)| DVec2::new(*lon, *lat)).collect();
-        RawFeature::new(tags, Element::Way, Shape::Lines(vec![line]))
-    }
-
-    #[test]
-    fn buildings_run_counter_clockwise_and_lines_lose_repetitions() {
-        let (projection, grid) = world();
-        let square = [(78.0, 42.0), (78.001, 42.0), (78.001, 42.001), (78.0, 42.001), (78.0, 42.0)];
-        let mut turned = square;
-        turned.reverse();
-        for outline in [square, turned] {
-            let placed = place(&[feature(&[("building", "yes")], &outline)], &projection, &grid);
-            let building = &placed.features.buildings[0];
-            assert!(building.outline.len() == 4 && signed_area_m2(&building.outline) < -8_000.0);
-            assert!(placed.features.is_sound());
-        }
-        let road = feature(&[("highway", "track")], &[(78.0, 42.0), (78.0, 42.0), (78.001, 42.0)]);
-        assert_eq!(place(&[road], &projection, &grid).features.roads[0].line.len(), 2);
-    }
-
-    #[test]
-    fn what_is_left_out_has_a_reason() {
-        let (projection, grid) = world();
-        let all = [
-            feature(&[("highway", "track")], &[(10.0, 42.0), (10.1, 42.0)]),
-            feature(&[("highway", "track")], &[(78.0, 42.0), (78.0, 42.0)]),
-            feature(&[("highway", "proposed")], &[(78.0, 42.0), (78.1, 42.0)]),
-            feature(&[("highway", "track")], &[(79.0, 42.0), (79.1, 42.0)]),
-            feature(&[("natural", "wood")], &[(78.0, 42.0), (78.01, 42.0), (78.01, 42.01)]),
-            feature(&[("boundary", "x")], &[(78.0, 42.0), (78.01, 42.0)]),
-        ];
-        let counts = place(&all, &projection, &grid).counts.described();
-        let highways = &counts["highways"];
-        assert_eq!((highways.read, highways.kept, highways.skipped), (4, 0, 4));
-        assert_eq!((highways.skipped_for[OUTSIDE], highways.skipped_for["fewer than two points"]), (2, 1));
-        assert_eq!(counts["forests"].skipped_for["an outline that does not close"], 1);
-        assert_eq!(counts["others"].skipped, 1);
-    }
-}
+#[path = "place_tests.rs"]
+mod tests;

@@ -7,7 +7,7 @@ use super::kind::Kind;
 use glam::DVec2;
 
 /// Keys that any meaning is read from; all others are not kept.
-const KEYS: [&str; 36] = [
+const KEYS: [&str; 37] = [
     "aeroway",
     "amenity",
     "area",
@@ -15,6 +15,7 @@ const KEYS: [&str; 36] = [
     "building",
     "building:levels",
     "ele",
+    "fclass",
     "generator:source",
     "height",
     "highway",
@@ -46,6 +47,9 @@ const KEYS: [&str; 36] = [
     "tower:type",
 ];
 
+/// Keys that say which a thing is, or where, and not what.
+const SAY_NOTHING: [&str; 8] = ["name", "level_m", "id", "fid", "osm_id", "objectid", "ogc_fid", "region"];
+
 /// Longest value kept, bytes; a longer one is cut.
 const MAX_VALUE_BYTES: usize = 255;
 
@@ -54,7 +58,7 @@ const MAX_VALUE_BYTES: usize = 255;
 pub struct Tags(Vec<(&'static str, String)>);
 
 /// What an element of OpenStreetMap is; files of other formats have a node for a point, else a way.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Element {
     /// A point.
     Node,
@@ -111,8 +115,12 @@ pub struct RawFeature {
     pub shape: Shape,
     /// Its area, if it has one.
     pub area: AreaOf,
-    /// Whether it has no tags because its format has none, so that a polygon is a lake.
+    /// Its number in its file, if such numbers are the same in all files.
+    pub id: Option<i64>,
+    /// Whether nothing says what it is and its format is one for outlines of lakes too: then a polygon is one.
     pub lake_by_default: bool,
+    /// What the books say of it if it is kept.
+    pub note: Option<&'static str>,
 }
 
 impl Tags {
@@ -145,16 +153,16 @@ impl Tags {
         self.get(key).is_some_and(|value| values.contains(&value))
     }
 
-    /// Whether a key says yes: it is there and is not `no`.
+    /// Whether a key says yes: it is there and is not `no`, or `F` as Geofabrik has it.
     pub fn says(&self, key: &str) -> bool {
-        self.get(key).is_some_and(|value| !matches!(value, "no" | "false" | "0"))
+        self.get(key).is_some_and(|value| !matches!(value, "no" | "false" | "0" | "F"))
     }
 }
 
 impl RawFeature {
     /// A feature whose area, if any, is its own.
     pub fn new(tags: Tags, element: Element, shape: Shape) -> Self {
-        Self { tags, element, shape, area: AreaOf::Itself, lake_by_default: false }
+        Self { tags, element, shape, area: AreaOf::Itself, id: None, lake_by_default: false, note: None }
     }
 }
 
@@ -163,6 +171,11 @@ impl Polygon {
     pub fn points(&self) -> usize {
         self.outers.iter().chain(&self.inners).map(Vec::len).sum()
     }
+}
+
+/// Whether a key, in whatever case, may say what a thing is.
+pub fn says_what(key: &str) -> bool {
+    !SAY_NOTHING.iter().any(|nothing| key.eq_ignore_ascii_case(nothing))
 }
 
 /// Whether a point is a place on Earth.

@@ -1,11 +1,12 @@
 //! ESRI shapefiles: `.shp`, with the attributes of the `.dbf` beside it as tags if there is one.
 //!
 //! Longitude and latitude are expected; a `.prj` beside it that says `PROJCS` is refused. Attributes are named as the
-//! keys of OpenStreetMap (DBF names end after ten letters) or as Natural Earth does. Polygons that say nothing are
-//! lakes.
+//! keys of OpenStreetMap (DBF names end after ten letters) or as Natural Earth and Geofabrik do. Polygons that say
+//! nothing but a name, a number or a level are lakes. A row that is marked as deleted still belongs to its shape.
 
-use super::raw::{Element, Polygon, RawFeature, Shape, Tags, is_place, ring_of};
-use super::{MAX_POINTS, natural_earth};
+use super::MAX_POINTS;
+use super::raw::{Element, Polygon, RawFeature, Shape, Tags, is_place, ring_of, says_what};
+use super::schemes::{geofabrik, natural_earth};
 use crate::bake::raster::Unreadable;
 use glam::DVec2;
 use shapefile::PolygonRing;
@@ -29,20 +30,37 @@ pub fn read(shp: &[u8], dbf: Option<&[u8]>, prj: Option<&str>) -> Result<Vec<Raw
     }
     // The crates that read these add and index without a check in places; damaged bytes are an error here all the same.
     let reading = || {
-        let rows = dbf.map_or_else(|| Ok(Vec::new()), attributes)?;
+        let rows = dbf.map(attributes).transpose()?;
         shapes(shp, rows)
     };
     catch_unwind(AssertUnwindSafe(reading))
         .unwrap_or_else(|_| Err(Unreadable::new("an undamaged shapefile", "numbers out of range")))
 }
 
-fn attributes(dbf: &[u8]) -> Result<Vec<Tags>, Unreadable> {
+/// A row of a table: its tags, and whether a column may say what the shape is.
+type Row = (Tags, bool);
+
+/// A table whose rows all count: the crate `dbase` leaves out those marked as deleted, and all after one would be another
+/// shape's.
+fn undeleted(dbf: &[u8]) -> Vec<u8> {
+    let mut dbf = dbf.to_vec();
+    let length = |at: usize| dbf.get(at..at + 2).map_or(0, |two| usize::from(u16::from_le_bytes([two[0], two[1]])));
+    let (head, row) = (length(8), length(10));
+    if row > 0
+        && let Some(rows) = dbf.get_mut(head..)
+    {
+        rows.iter_mut().step_by(row).filter(|mark| **mark == b'*').for_each(|mark| *mark = b' ');
+    }
+    dbf
+}
+
+fn attributes(dbf: &[u8]) -> Result<Vec<Row>, Unreadable> {
     let damaged = |e: dbase::Error| Unreadable::new("an undamaged .dbf", e.to_string());
-    let mut reader = dbase::Reader::new(Cursor::new(dbf)).map_err(damaged)?;
+    let mut reader = dbase::Reader::new(Cursor::new(undeleted(dbf))).map_err(damaged)?;
     let mut rows = Vec::new();
     // A row takes at least a byte, whatever the head says.
     for row in reader.iter_records().take(dbf.len()) {
-        let mut tags = Tags::default();
+        let (mut tags, mut said) = (Tags::default(), false);
         for (name, value) in row.map_err(damaged)? {
             let text = match value {
                 FieldValue::Character(Some(text)) => text,
@@ -56,19 +74,21 @@ fn attributes(dbf: &[u8]) -> Result<Vec<Tags>, Unreadable> {
             let name = name.to_ascii_lowercase();
             let text = text.trim();
             if !text.is_empty() {
+                said |= says_what(&name);
                 tags.push(if name == "building:l" { "building:levels" } else { &name }, text);
                 natural_earth(&mut tags, &name, text);
             }
         }
-        rows.push(tags);
+        rows.push((tags, said));
     }
     Ok(rows)
 }
 
-fn shapes(shp: &[u8], rows: Vec<Tags>) -> Result<Vec<RawFeature>, Unreadable> {
+fn shapes(shp: &[u8], rows: Option<Vec<Row>>) -> Result<Vec<RawFeature>, Unreadable> {
     let damaged = |e: shapefile::Error| Unreadable::new("an undamaged .shp", e.to_string());
     let mut reader = shapefile::ShapeReader::new(Cursor::new(shp)).map_err(damaged)?;
-    let mut rows = rows.into_iter();
+    let (table, number) = (rows.is_some(), rows.as_ref().map_or(0, Vec::len));
+    let mut rows = rows.into_iter().flatten();
     let mut points = 0;
     let mut read = Vec::new();
     for shape in reader.iter_shapes() {
@@ -86,9 +106,18 @@ fn shapes(shp: &[u8], rows: Vec<Tags>) -> Result<Vec<RawFeature>, Unreadable> {
             _ => Shape::Broken("several points or a mesh"),
         };
         let element = if matches!(shape, Shape::Point(_)) { Element::Node } else { Element::Way };
-        let mut raw = RawFeature::new(rows.next().unwrap_or_default(), element, shape);
-        raw.lake_by_default = true;
+        let (mut tags, said) = rows.next().unwrap_or_default();
+        geofabrik(&mut tags, matches!(shape, Shape::Polygon(_)));
+        let mut raw = RawFeature::new(tags, element, shape);
+        raw.lake_by_default = !said;
+        raw.note = (!table).then_some("read without a .dbf");
         read.push(raw);
+    }
+    if table && number != read.len() {
+        return Err(Unreadable::new(
+            format!("{} rows in the .dbf, one for each shape", read.len()),
+            number.to_string(),
+        ));
     }
     Ok(read)
 }

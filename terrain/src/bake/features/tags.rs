@@ -238,11 +238,17 @@ fn areas(tags: &Tags, found: &mut Vec<(Kind, Result<Meaning, Skip>)>) {
         |v: &[&str]| tags.is_any("natural", v),
         |v: &[&str]| tags.is_any("leisure", v),
     );
-    let mut add = |kind, meaning| found.push((kind, Ok(meaning)));
     if natural(&["water"]) || landuse(&["reservoir", "basin"]) {
-        let still = !tags.is_any("water", &["river", "stream", "canal", "ditch", "drain", "rapids", "lock"]);
-        add(Kind::Lakes, Meaning::Water { still });
+        const RUNNING: [&str; 8] = ["river", "riverbank", "stream", "canal", "ditch", "drain", "rapids", "lock"];
+        let still = !tags.is_any("water", &RUNNING) && !tags.is_any("waterway", &RUNNING);
+        if tags.is_any("waterway", &["riverbank", "dock"]) {
+            // One area, not two over each other.
+            found.push((Kind::Lakes, Err("drawn as a waterway".into())));
+        } else {
+            found.push((Kind::Lakes, Ok(Meaning::Water { still })));
+        }
     }
+    let mut add = |kind, meaning| found.push((kind, Ok(meaning)));
     if landuse(&["forest"]) || natural(&["wood"]) {
         add(Kind::Forests, Meaning::Area(forest(tags)));
     }
@@ -409,6 +415,14 @@ mod tests {
         assert_eq!(only(&[("natural", "water")]), Ok(Meaning::Water { still: true }));
         assert_eq!(only(&[("natural", "water"), ("water", "river")]), Ok(Meaning::Water { still: false }));
         assert_eq!(meanings(&tags(&[("landuse", "forest"), ("highway", "track")]), Element::Way).len(), 2);
+        for (value, still) in [("river", false), ("canal", false), ("dam", true)] {
+            let both = meanings(&tags(&[("natural", "water"), ("waterway", value)]), Element::Way);
+            assert_eq!(both[1], (Kind::Lakes, Ok(Meaning::Water { still })), "{value}");
+        }
+        // A bank is running water, once.
+        let bank = meanings(&tags(&[("natural", "water"), ("waterway", "riverbank")]), Element::Way);
+        assert_eq!(bank[0], (Kind::Waterways, Ok(Meaning::Water { still: false })));
+        assert!(bank.len() == 2 && bank[1].1.is_err());
         assert!(meanings(&tags(&[("highway", "crossing")]), Element::Node).is_empty());
     }
 }

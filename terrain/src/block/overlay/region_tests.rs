@@ -1,3 +1,5 @@
+//! Tests of outlines cut along the ground: no gap, no overlap, no open edge.
+
 use super::super::lattice::Lattice;
 use super::*;
 use glam::DVec2;

@@ -18,6 +18,9 @@ use glam::DVec2;
 /// Longest mitre, in half widths: turns of up to 97 degrees are mitred.
 pub const MITRE_LIMIT: f64 = 1.5;
 
+/// Greatest nominal width, metres: a block looks no farther beyond its border for what reaches into it.
+pub const MOST_WIDTH_M: f64 = 250.0;
+
 /// Share of its width by which a ribbon may be off before it is corrected.
 pub const WIDTH_STEP: f64 = 0.02;
 
@@ -63,8 +66,8 @@ struct Station {
 
 impl Ribbon {
     /// Ribbons of a line: parts that lie beyond the lattice or wholly outside the grid, by more than a post step, are
-    /// left out.
-    pub fn of_line(field: &Field, lattice: &Lattice, line: &[DVec2], half_m: f64) -> Vec<Self> {
+    /// left out, and all from the spot on that would be one more than `room`.
+    pub fn of_line(field: &Field, lattice: &Lattice, line: &[DVec2], half_m: f64, room: usize) -> Vec<Self> {
         let grid = field.grid();
         let margin = UNITS + (4.0 * half_m / lattice.unit_m()).min(1e9) as i64;
         let (east, south) = (i64::from(grid.columns() - 1) * UNITS, i64::from(grid.rows() - 1) * UNITS);
@@ -76,6 +79,7 @@ impl Ribbon {
         };
         let mut ribbons = Vec::new();
         let mut spots: Vec<Spot> = Vec::new();
+        let mut left = room;
         let mut finish = |spots: &mut Vec<Spot>| {
             if spots.len() >= 2 {
                 let closed = spots.len() > 3 && spots.first() == spots.last();
@@ -90,6 +94,7 @@ impl Ribbon {
             };
             let Some(&last) = spots.last() else {
                 spots.push(spot);
+                left = left.saturating_sub(1);
                 continue;
             };
             let length_m = lattice.between_m(last, spot).length();
@@ -111,6 +116,10 @@ impl Ribbon {
                 if parts > 1 && outside(before, next) {
                     finish(&mut spots);
                 }
+                if left == 0 {
+                    return ribbons;
+                }
+                left -= 1;
                 spots.push(next);
             }
         }
@@ -319,7 +328,7 @@ mod tests {
     fn quads(field: &Field, line: &[DVec2], width_m: f64) -> Vec<Quad> {
         let lattice = Lattice::of(field.grid());
         let mut found = Vec::new();
-        for ribbon in Ribbon::of_line(field, &lattice, line, 0.5 * width_m) {
+        for ribbon in Ribbon::of_line(field, &lattice, line, 0.5 * width_m, usize::MAX) {
             for segment in 0..ribbon.segments() {
                 ribbon.segment(field, &lattice, segment, |quad| found.push(quad));
             }
@@ -424,9 +433,24 @@ mod tests {
             vec![p(-far, -far), p(far, far)],
         ] {
             let lattice = Lattice::of(field.grid());
-            let ribbons = Ribbon::of_line(&field, &lattice, &line, 3.0);
+            let ribbons = Ribbon::of_line(&field, &lattice, &line, 3.0, usize::MAX);
             assert!(ribbons.iter().map(|ribbon| ribbon.spots.len()).sum::<usize>() < 100, "{line:?}");
             assert!(quads(&field, &line, 6.0).len() < 1_000);
+        }
+    }
+    #[test]
+    fn no_more_is_made_than_there_is_room_for() {
+        let field = synthetic::flat(Grid::centred(200.0, 2, 2).unwrap(), 0.0);
+        let lattice = Lattice::of(field.grid());
+        // Out of the grid and back: several ribbons of one line.
+        let line: Vec<DVec2> =
+            (0..200).map(|at| DVec2::new(f64::from(at), if at % 20 < 10 { 0.0 } else { 90_000.0 })).collect();
+        let whole = Ribbon::of_line(&field, &lattice, &line, 3.0, usize::MAX);
+        let spots = |ribbons: &[Ribbon]| ribbons.iter().map(|ribbon| ribbon.spots.len()).sum::<usize>();
+        assert!(whole.len() > 5 && spots(&whole) > 100);
+        for room in [0, 1, 2, 30, 90] {
+            let part = Ribbon::of_line(&field, &lattice, &line, 3.0, room);
+            assert!(spots(&part) <= room && part[..] == whole[..part.len()], "{room}");
         }
     }
 }

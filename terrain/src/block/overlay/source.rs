@@ -6,7 +6,7 @@ use super::lattice::{Lattice, Spot, UNITS};
 use super::markings::{self, Mark};
 use super::polygon;
 use super::region::Region;
-use super::ribbon::Ribbon;
+use super::ribbon::{MOST_WIDTH_M, Ribbon};
 use crate::features::cover::CoverClass;
 use crate::features::lakes::Lakes;
 use crate::features::model::{Features, RunwaySurface, WaterwayClass};
@@ -88,11 +88,8 @@ impl Sources {
         let mut sources = Vec::new();
         let mut room = MOST_SPOTS;
         let mut ribbons = |kind: Kind, line: &[DVec2], width_m: f32, sources: &mut Vec<Source>| {
-            let half_m = 0.5 * f64::from(width_m).clamp(0.1, 250.0);
-            for ribbon in Ribbon::of_line(field, &lattice, line, half_m) {
-                if ribbon.spots.len() > room {
-                    return;
-                }
+            let half_m = 0.5 * f64::from(width_m).clamp(0.1, MOST_WIDTH_M);
+            for ribbon in Ribbon::of_line(field, &lattice, line, half_m, room) {
                 room -= ribbon.spots.len();
                 let along_m = lengths(&lattice, &ribbon);
                 sources.push(Source { kind, shape: Shape::Ribbon { ribbon, along_m } });

@@ -269,7 +269,8 @@ fn a_window_that_waits_shows_an_edit_in_its_next_update_as_one_made_over_it() {
             window.set_landscape(newest.clone(), &changed);
         }
         let eye = DVec2::new(-9_000.0 + 150.0 * f64::from(frame), 90.0 * f64::from(frame));
-        gpu.apply(window.update(eye, 300.0));
+        // 175 m a frame, thirty a second: at less than its true speed it would ask for blocks too late.
+        gpu.apply(window.update(eye, 5_250.0));
         assert!(!window.is_changing() && Arc::ptr_eq(window.landscape(), &newest), "frame {frame}");
         assert_eq!(window.late_blocks(), 0, "frame {frame}");
         one_version(&gpu, &window);

@@ -100,17 +100,52 @@ fn edges_are_white_then_yellow_and_no_more_than_sixty_metres_apart() {
             let (ahead, right) = ahead_and_right(runway, end);
             let mut left: Vec<&LightPoint> =
                 lights.iter().filter(|light| (light.at - runway.ends[end]).dot(right) < 0.0).collect();
+            left.retain(|light| light.beam == Beam::TwoSided);
             left.sort_by(|a, b| a.at.dot(ahead).total_cmp(&b.at.dot(ahead)));
             assert!(left.windows(2).all(|pair| pair[0].at.distance(pair[1].at) <= EDGE_SPACING_M + 1e-6));
             let plan = runway.ends[end] - ahead * 3_000.0;
             let eye = DVec3::new(plan.x, 681.0 + 180.0, plan.y);
+            let around: Vec<&LightPoint> = lights.iter().filter(|light| light.beam == Beam::Beside).collect();
             for light in left {
+                // What shines all around takes less than a tenth of the colour of the beam, set down to 4 % as by night.
+                let beside = around.iter().find(|beside| beside.at == light.at).unwrap();
+                let base = DVec3::new(light.at.x, 681.0 + f64::from(light.above_m), light.at.y);
+                let cd = |one: &LightPoint| one.intensity_cd * one.towards(eye - base).into_iter().fold(0.0, f32::max);
+                assert!(cd(beside) < 0.1 * 0.04 * cd(light), "{} beside {}", cd(beside), cd(light));
                 let to_go_m = length_m - (light.at - runway.ends[end]).dot(ahead);
                 let expected = if to_go_m < caution_m { "yellow" } else { "white" };
                 // On the border itself rounding decides.
                 if (to_go_m - caution_m).abs() > 1e-6 {
                     assert_eq!(seen(light, eye), expected, "{to_go_m} m to go of {length_m}");
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn edges_are_seen_from_all_around() {
+    for (surface, least_cd) in [(RunwaySurface::Asphalt, 50.0), (RunwaySurface::Grass, 25.0)] {
+        let mut field = field(2_500.0, 53.0);
+        field.runways[0].surface = surface;
+        let runway = &field.runways[0];
+        let mut lights = Vec::new();
+        edges(runway, &mut lights);
+        let (_, right) = ahead_and_right(runway, 0);
+        let middle = runway.ends[0].midpoint(runway.ends[1]);
+        for (abeam_m, up_m) in [(2_000.0, 300.0), (-2_000.0, 300.0), (2_000.0, 535.0), (-900.0, 60.0)] {
+            let plan = middle + right * abeam_m;
+            let eye = DVec3::new(plan.x, 681.0 + up_m, plan.y);
+            for light in &lights {
+                let sent_cd: f32 = lights
+                    .iter()
+                    .filter(|other| other.at == light.at)
+                    .map(|one| {
+                        let base = DVec3::new(one.at.x, 681.0 + f64::from(one.above_m), one.at.y);
+                        one.intensity_cd * one.towards(eye - base).into_iter().fold(0.0, f32::max)
+                    })
+                    .sum();
+                assert!(sent_cd >= least_cd, "{sent_cd} cd at {abeam_m} m");
             }
         }
     }
