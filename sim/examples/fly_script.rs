@@ -18,6 +18,10 @@ fn main() {
         Err(error) => return eprintln!("{error}"),
     };
     let from_m = scene.aircraft().position_m;
+    for target in scene.snapshot().targets.iter() {
+        let at = target.position_m - from_m;
+        println!("target {:?} x {:8.1} z {:8.1} height {:7.1}", target.id, at.x, at.z, target.position_m.y);
+    }
     for second in 0..seconds {
         let now = sim::lockstep(&mut scene, &ground, 120);
         let own = &now.aircraft;
@@ -37,6 +41,12 @@ fn main() {
             now.instruments.map_or(0.0, |of| of.rpm[0]),
             own.condition
         );
+        if let Some(Ok(found)) = now.weapons.as_ref().map(|page| page.ccip) {
+            let nearest = now.targets.iter().map(|target| (target.position_m.distance(found.point_m), target.id));
+            let nearest = nearest.min_by(|a, b| a.0.total_cmp(&b.0));
+            let at = found.point_m - from_m;
+            println!("     ccip {:.1} s at {:.0} {:.0}, nearest target {nearest:?}", found.time_s, at.x, at.z);
+        }
         for event in now.events.iter().filter(|event| event.time_s > now.time_s - 1.0) {
             println!("     {:?}", event.what);
         }

@@ -89,6 +89,7 @@ pub fn take(flown: Scenery, plan: &Plan, args: &FlyArgs, date: UtcTime) -> Resul
                     let steps = (at - scene.clock.step()).min(u64::from(STEPS_A_LOOK)) as u32;
                     let snapshot = sim::lockstep(&mut scene, &ground, steps);
                     album.effects.of(&snapshot);
+                    album.seat.cameras.follow_weapon(&snapshot);
                 }
                 let camera = moment.camera.as_deref().map_or(Ok(args.camera), |name| {
                     <Camera as clap::ValueEnum>::from_str(name, true).map_err(|_| {

@@ -70,7 +70,7 @@ pub(super) fn panel(sheet: &mut Sheet, of: &Instruments) {
     }
     if let Some([left_kg, full_kg]) = of.fuel_kg {
         let share = left_kg / full_kg;
-        rows.bar("FUEL", share, None, &format!("{} KG", shown(rounded(left_kg), 0)), !(share > 0.15));
+        rows.bar("FUEL", share, None, &format!("{} KG", shown(rounded(left_kg), 0)), share.is_nan() || share <= 0.15);
     }
     if let Some([flaps_rad, most_rad]) = of.flaps_rad {
         rows.bar("FLAP", flaps_rad / most_rad, None, &shown(rounded(flaps_rad.to_degrees()), 0), false);

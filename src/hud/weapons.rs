@@ -50,7 +50,7 @@ pub struct WeaponPage<'a> {
     pub sight: Sight<'a>,
 }
 
-const LEFT_X: f64 = 440.0;
+const LEFT_X: f64 = 482.0;
 const RIGHT_X: f64 = 620.0;
 const TOP_Y: f64 = 178.0;
 const ROW: f64 = 19.0;

@@ -164,7 +164,7 @@ impl Cameras {
     }
 
     /// Keeps to the youngest weapon of the own aircraft; when it is gone, to where it was last seen.
-    fn follow_weapon(&mut self, snapshot: &Snapshot) {
+    pub fn follow_weapon(&mut self, snapshot: &Snapshot) {
         if let Some(weapon) = snapshot.projectiles.iter().max_by_key(|weapon| weapon.id) {
             let along = weapon.velocity_mps.try_normalize().unwrap_or(DVec3::NEG_Y);
             self.weapon = Some((weapon.position_m, along, snapshot.time_s));

@@ -11,7 +11,7 @@ use crate::output::{self, Output};
 use crate::report::{AxisSeen, ButtonSeen, Device, Input};
 use crate::sticks;
 use sim::input::Curve;
-use sim::input::joystick::{Change, Joystick};
+use sim::input::joystick::{Change, Connected, Joystick};
 use sim::input::profile::{AxisBinding, Profile, Target};
 use std::collections::BTreeMap;
 use std::io::{self, IsTerminal, Write};
@@ -158,7 +158,7 @@ impl Heard {
     }
 
     fn report(&self, sticks: &Joystick, profiles: &Arc<[Profile]>) -> Input {
-        let device = |(number, name, id): (usize, String, Option<(u16, u16)>)| {
+        let device = |Connected { number, name, vendor_product: id }: Connected| {
             let by = binding(profiles, id);
             let of = |(key, _): &(&(usize, u32), &Moves)| key.0 == number;
             let axes = self.axes.iter().filter(of).map(|((_, code), axis)| AxisSeen {
@@ -210,7 +210,7 @@ fn written(
     let file = args.sticks.clone().or_else(sticks::own_file).ok_or_else(|| {
         Failure::Misuse("expected --sticks FILE to write to, found neither it nor XDG_CONFIG_HOME nor HOME".to_owned())
     })?;
-    for (number, name, id) in sticks.connected() {
+    for Connected { number, name, vendor_product: id } in sticks.connected() {
         let axes: Vec<_> = found.iter().filter(|(device, ..)| *device == number).collect();
         let Some(id) = id.filter(|_| !axes.is_empty()) else { continue };
         let before = binding(profiles, Some(id)).cloned().unwrap_or_default();

@@ -27,6 +27,17 @@ impl fmt::Display for JoystickError {
 
 impl std::error::Error for JoystickError {}
 
+/// A device that is there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Connected {
+    /// Its number while it is there.
+    pub number: usize,
+    /// As the system calls it.
+    pub name: String,
+    /// USB vendor and product.
+    pub vendor_product: Option<(u16, u16)>,
+}
+
 /// What a device did, before anything is bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Change {
@@ -96,11 +107,14 @@ impl Joystick {
         &self.bindings
     }
 
-    /// Number, name, vendor and product of each connected device.
-    pub fn connected(&self) -> Vec<(usize, String, Option<(u16, u16)>)> {
-        let pads = self.gilrs.gamepads();
-        pads.map(|(id, pad)| (usize::from(id), pad.os_name().to_owned(), pad.vendor_id().zip(pad.product_id())))
-            .collect()
+    /// The connected devices.
+    pub fn connected(&self) -> Vec<Connected> {
+        let one = |(id, pad): (GamepadId, gilrs::Gamepad<'_>)| Connected {
+            number: usize::from(id),
+            name: pad.os_name().to_owned(),
+            vendor_product: pad.vendor_id().zip(pad.product_id()),
+        };
+        self.gilrs.gamepads().map(one).collect()
     }
 
     /// Names of the connected devices with vendor and product.

@@ -44,11 +44,9 @@ impl Scene {
                 arms.ripple = RIPPLES[(now + 1) % RIPPLES.len()];
             }
             input::Command::Trigger => self.trigger(),
-            input::Command::TriggerEnd => {
-                if self.own_kind() == Some(WeaponKind::Gun) {
-                    // Ceasing needs nothing that could be missing.
-                    let _ = self.order(Command::CeaseFire { owner });
-                }
+            input::Command::TriggerEnd if self.own_kind() == Some(WeaponKind::Gun) => {
+                // Ceasing needs nothing that could be missing.
+                let _ = self.order(Command::CeaseFire { owner });
             }
             _ => {}
         }

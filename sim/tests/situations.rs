@@ -1,0 +1,99 @@
+//! The embedded situations, flown by their scripts over the embedded world.
+
+use sim::situation::{BUILTIN, Situation};
+use sim::weapons::Damage;
+use sim::{Condition, Scene, SceneGround, Snapshot, UtcTime};
+use std::sync::{Arc, LazyLock};
+use terrain::store::World;
+
+static WORLD: LazyLock<World> = LazyLock::new(|| terrain::bake::default_world(&mut |_, _| {}).unwrap().world);
+
+fn begin(name: &str) -> (Scene, SceneGround) {
+    let ground = SceneGround::from(terrain::Ground::new(WORLD.field.clone()).whole());
+    let situation = Situation::builtin(name).unwrap();
+    let date = situation.date().unwrap().unwrap_or(UtcTime { unix_ns: 0 });
+    (situation.scene(&WORLD, date, 120, Default::default(), true).unwrap(), ground)
+}
+
+/// Flies on for a time and looks once a second.
+fn fly(scene: &mut Scene, ground: &SceneGround, seconds: u32, mut look: impl FnMut(&Snapshot)) -> Arc<Snapshot> {
+    for _ in 0..seconds {
+        look(&sim::lockstep(scene, ground, 120));
+    }
+    Arc::new(scene.snapshot())
+}
+
+#[test]
+fn the_circuit_is_flown_and_ends_parked_on_its_runway() {
+    let (mut scene, ground) = begin("circuit");
+    let start = scene.aircraft();
+    let (mut highest_m, mut touched_s) = (0.0f64, None);
+    let last = fly(&mut scene, &ground, 380, |now| {
+        assert_ne!(now.aircraft.condition, Condition::Crashed, "{} s", now.time_s);
+        highest_m = highest_m.max(now.aircraft.position_m.y - start.position_m.y);
+        if now.time_s > 100.0 && now.aircraft.condition == Condition::OnGround {
+            touched_s = touched_s.or(Some(now.time_s));
+        }
+    });
+    assert!((290.0..320.0).contains(&highest_m), "{highest_m}");
+    assert!(touched_s.is_some_and(|s| (330.0..360.0).contains(&s)), "{touched_s:?}");
+    assert!(last.aircraft.velocity_mps.length() < 1e-3 && last.levers.parking_brake == 1.0);
+    // On the centre line, a runway of 45 m, and at its level: the centre of gravity is where it was at the start.
+    let along = start.attitude * glam::DVec3::X;
+    let away = last.aircraft.position_m - start.position_m;
+    assert!((away - along * away.dot(along)).length() < 10.0 && away.y.abs() < 0.1, "{away}");
+}
+
+#[test]
+fn the_valley_is_flown_low_and_nothing_is_touched() {
+    let (mut scene, ground) = begin("valley");
+    let (mut least_m, mut most_m) = (f64::INFINITY, 0.0f64);
+    fly(&mut scene, &ground, 400, |now| {
+        assert_eq!(now.aircraft.condition, Condition::Flying, "{} s", now.time_s);
+        let height_m = now.height_above_ground_m.unwrap();
+        (least_m, most_m) = (least_m.min(height_m), most_m.max(height_m));
+    });
+    assert!(least_m > 50.0 && most_m < 250.0, "{least_m} {most_m}");
+}
+
+#[test]
+fn the_range_is_bombed_and_a_bunker_is_destroyed() {
+    let (mut scene, ground) = begin("range");
+    let last = fly(&mut scene, &ground, 95, |_| {});
+    let destroyed = last.targets.iter().filter(|target| target.damage == Damage::Destroyed).count();
+    assert_eq!(destroyed, 1);
+    let dropped: u64 = scene.tallies().iter().map(|row| row.tally.measured).sum();
+    assert_eq!(dropped, 4, "{:?}", scene.tallies());
+}
+
+#[test]
+fn a_script_flies_the_same_flight_each_time() {
+    for (name, _) in BUILTIN {
+        let hash = || {
+            let (mut scene, ground) = begin(name);
+            fly(&mut scene, &ground, 30, |_| {}).hash()
+        };
+        assert_eq!(hash(), hash(), "{name}");
+    }
+}
+
+#[test]
+fn situations_that_are_none_are_refused_with_what_was_expected() {
+    let circuit = BUILTIN.iter().find(|(name, _)| *name == "circuit").unwrap().1;
+    for (wrong, told) in [
+        (circuit.replace("\"UCFL\"", "\"KJFK\""), "runway.airfield: expected one of ["),
+        (circuit.replace("from_threshold_m = 60.0", "from_threshold_m = 6e4"), "runway.from_threshold_m: expected 0.."),
+        (circuit.replace("aircraft = \"trainer\"", "aircraft = \"none.toml\""), "own.aircraft"),
+        (circuit.replace("date = \"2026", "date = \"never"), "date:"),
+        (circuit.replace("at_s = 24.0", "at_s = -1.0"), "script[1]: at_s: expected seconds"),
+        (circuit.replace("fly = true", "command = \"eject\""), "command: expected one of pause"),
+        (circuit.replace("fly = true", "hold = { line = [[42.6, 76.7]] }"), "hold.line: expected two places, found 1"),
+        (circuit.replace("fly = true", "warp = 9"), "warp"),
+    ] {
+        let found = Situation::from_text("circuit.toml".as_ref(), &wrong)
+            .and_then(|of| of.scene(&WORLD, UtcTime { unix_ns: 0 }, 120, Default::default(), true).map(drop));
+        let found = found.unwrap_err().to_string();
+        assert!(found.contains(told), "{told}: {found}");
+    }
+    assert!(Situation::builtin("moon").unwrap_err().to_string().contains("expected one of [circuit, valley, range]"));
+}
