@@ -102,7 +102,7 @@ fn misuse_ends_with_2_and_says_what_was_expected_and_found() {
     assert_refused(&["fly", "--time", "noon"], 2, &["expected a time such as", "found `noon`"]);
     assert_refused(&["fly", "--speed-mps", "nan"], 2, &["expected a speed", "found `nan`"]);
     assert_refused(&["fly", "--lockstep", "--paced", "60"], 2, &["--lockstep", "--paced"]);
-    assert_refused(&["fly", "--scenario", "a.toml"], 2, &["scenarios", "a.toml"]);
+    assert_refused(&["fly", "--scenario", "a.toml"], 2, &["circuit, valley, range", "a.toml"]);
     assert_refused(&["bake", "--dem", "a.tif", "--out", "c"], 2, &["ends in .world", "`c`"]);
     assert_refused(&["bake", "--dem", "a.tif", "--out", "c.world", "--step", "24"], 2, &["25..=400", "found `24`"]);
     assert_refused(&["shot", "--eye", "1,2,3", "--look", "0,0", "--out", "a.jpg"], 2, &[".png", "a.jpg"]);

@@ -35,8 +35,8 @@ pub const CAMERAS: [Camera; 6] =
 /// Distance behind and height over the aircraft of the chase camera, and distance of the one about it, metres.
 const CHASE_M: [f64; 2] = [24.0, 5.0];
 const ORBIT_M: f64 = 22.0;
-/// Height of an eye in a tower over its foot, and of a person beside the way, metres.
-const TOWER_M: f64 = 20.5;
+/// Height of an eye on a tower's roof over its foot, and of a person beside the way, metres.
+const TOWER_M: f64 = 23.4;
 const PERSON_M: f64 = 1.8;
 /// A tower farther than this sees nothing of the flight, metres.
 const TOWER_REACH_M: f64 = 12_000.0;
@@ -148,7 +148,8 @@ impl Cameras {
         let near = |tower: &&DVec2| tower.distance_squared(DVec2::new(at_m.x, at_m.z));
         let tower = self.towers.iter().min_by(|a, b| near(a).total_cmp(&near(b)));
         if let Some(tower) = tower.filter(|tower| near(tower) < TOWER_REACH_M * TOWER_REACH_M) {
-            return DVec3::new(tower.x, area.height_m(tower.x, tower.y).unwrap_or(at_m.y) + TOWER_M, tower.y);
+            // Beside the aerial.
+            return DVec3::new(tower.x + 1.5, area.height_m(tower.x, tower.y).unwrap_or(at_m.y) + TOWER_M, tower.y);
         }
         // Places are fixed in the world: the eye jumps on when the aircraft is past one.
         let along = if way.x.abs() > way.z.abs() { DVec3::X } else { DVec3::Z };

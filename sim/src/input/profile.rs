@@ -199,7 +199,8 @@ fn profile(number: usize, stick: Stick) -> Result<Profile, ProfileError> {
 }
 
 fn device(text: &str) -> Result<(u16, u16), String> {
-    let number = |part: &str| (part.len() == 4).then(|| u16::from_str_radix(part, 16).ok()).flatten();
+    let is_hex = |part: &str| part.len() == 4 && part.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let number = |part: &str| u16::from_str_radix(part, 16).ok().filter(|_| is_hex(part));
     text.split_once(':')
         .and_then(|(vendor, product)| number(vendor).zip(number(product)))
         .ok_or_else(|| format!("device: expected vendor:product such as 044f:b10a, found {text}"))
@@ -243,6 +244,6 @@ mod tests {
         assert!(refused("[[stick]]\nbuttons = [{ code = 1, does = 'eject' }]").contains("expected one of pause"));
         assert!(refused("[[stick]]\nwheels = 3").contains("wheels"));
         assert!(refused(&"#".repeat(MOST_BYTES + 1)).contains("bytes"));
-        assert!(refused("\u{0}").contains("TOML") || !refused("\u{0}").is_empty());
+        assert!(!refused("\u{0}").is_empty());
     }
 }
