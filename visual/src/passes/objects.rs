@@ -405,7 +405,7 @@ fn shapes(gpu: &Gpu, own: &[(Model, Mesh)]) -> (Vec<Shape>, wgpu::Buffer, wgpu::
 }
 
 /// A shape of a world's own in the units of the one that it replaces: as long as a placed thing really is, as high as a mast
-/// that is scaled to its height. What has neither keeps its size.
+/// that is scaled to its height, as long as the generated shape of what only a scene moves.
 fn in_place_of(model: Model, mesh: Mesh) -> Mesh {
     match model.placed() {
         Some(class) => {
@@ -417,7 +417,10 @@ fn in_place_of(model: Model, mesh: Mesh) -> Mesh {
             let (low, high) = model.mesh(0).bounds_m();
             glb::fitted(mesh, Fit::HeightM(high.y - low.y))
         }
-        None => mesh,
+        None => {
+            let (low, high) = model.mesh(0).bounds_m();
+            glb::fitted(mesh, Fit::LengthM((high - low).x.max((high - low).z)))
+        }
     }
 }
 
@@ -493,6 +496,9 @@ mod tests {
             } else if let Some(class) = model.placed() {
                 let around = shape::bounds(shape::placed(class));
                 let long_m = (around.high - around.low).x.max((around.high - around.low).z) as f32;
+                assert!((is.x - long_m).abs() < 1e-4, "{model:?}: {is}");
+            } else {
+                let long_m = (was.1 - was.0).x.max((was.1 - was.0).z);
                 assert!((is.x - long_m).abs() < 1e-4, "{model:?}: {is}");
             }
         }
