@@ -13,6 +13,7 @@ use crate::values::{Overlay, Quality, Without};
 use glam::{DQuat, DVec2, DVec3};
 use sim::UtcTime;
 use std::sync::{Arc, Once};
+use terrain::block::rings::NEAR_RADIUS_M;
 use terrain::block::window::{BUDGET_BYTES, Settings as WindowSettings, Window};
 use terrain::block::{Landscape, Rings};
 use terrain::features::index::ObjectIndex;
@@ -38,13 +39,15 @@ pub struct Content {
     pub objects: bool,
     /// Share of the plants that are drawn, 0 to 1.
     pub plants: f32,
+    /// How far from the eye overlays, objects and plants are drawn at most, metres; not beyond the near zone.
+    pub reach_m: f64,
     /// Light points and lit windows.
     pub lights: bool,
 }
 
 impl Content {
     /// All of it.
-    pub const ALL: Self = Self { overlays: true, objects: true, plants: 1.0, lights: true };
+    pub const ALL: Self = Self { overlays: true, objects: true, plants: 1.0, reach_m: NEAR_RADIUS_M, lights: true };
 }
 
 /// What shines in the sky: unit vectors, world frame.
@@ -121,6 +124,7 @@ impl Look {
                     Some(share) => share as f32,
                     None => preset.content.plants,
                 },
+                reach_m: preset.content.reach_m,
             },
             wait,
             ..preset
@@ -129,10 +133,10 @@ impl Look {
 
     /// A preset alone: 1280 x 720 pixels, 60 degrees, waiting for every block.
     pub fn preset(quality: Quality) -> Self {
-        let (window, msaa, render_scale, detail, plants, haze) = match quality {
-            Quality::Fine => (24, 4, 1.0, 2, 1.0, HazeGrade::Table),
-            Quality::Standard => (24, 1, 1.0, 2, 1.0, HazeGrade::Table),
-            Quality::Software => (12, 1, 0.67, 0, 0.4, HazeGrade::Horizon),
+        let (window, msaa, render_scale, detail, plants, reach_m, haze) = match quality {
+            Quality::Fine => (24, 4, 1.0, 2, 1.0, NEAR_RADIUS_M, HazeGrade::Table),
+            Quality::Standard => (24, 1, 1.0, 2, 1.0, NEAR_RADIUS_M, HazeGrade::Table),
+            Quality::Software => (12, 1, 0.67, 0, 0.25, 4_000.0, HazeGrade::Horizon),
         };
         Self {
             size_px: [1280, 720],
@@ -145,7 +149,7 @@ impl Look {
             msaa,
             render_scale,
             ground: TerrainLook { detail, overlay: false, wireframe: false },
-            content: Content { plants, ..Content::ALL },
+            content: Content { plants, reach_m, ..Content::ALL },
             wait: true,
             haze,
             keep_depth: false,

@@ -55,7 +55,7 @@ impl Things {
         look: &Look,
     ) -> Self {
         let (frame, ground, format) = (renderer.frame_layout(), terrain.bindings().0, renderer.scene_format());
-        let near_m = near_m.min(NEAR_RADIUS_M);
+        let near_m = near_m.min(NEAR_RADIUS_M).min(look.content.reach_m);
         let overlay = look.content.overlays.then(|| {
             let settings = OverlaySettings { reach_m: near_m, detail: look.ground.detail, wait: look.wait };
             OverlayPass::new(gpu, frame, ground, format, landscape.clone(), settings)

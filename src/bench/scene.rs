@@ -43,7 +43,7 @@ struct Variant {
     empty: bool,
 }
 
-const NOTHING: Content = Content { overlays: false, objects: false, plants: 0.0, lights: false };
+const NOTHING: Content = Content { overlays: false, objects: false, plants: 0.0, lights: false, ..Content::ALL };
 
 fn variants() -> Vec<Variant> {
     let standard = |name, content| Variant { name, content, quality: Quality::Standard, empty: false };

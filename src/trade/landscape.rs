@@ -40,6 +40,13 @@ pub(super) fn knobs(all: &Setting<'_>, tell: &mut dyn FnMut(&str)) -> Result<Vec
         |share: f64| Look { content: Content { plants: share as f32, ..setting.look.content }, ..setting.look };
     knobs.push(setting.knob("plants", "share of all", &against("all plants"), values(shares, plants), &most, grey)?);
 
+    tell("reach");
+    let reaches: &[f64] =
+        if effort.quick { &[2_500.0, 5_000.0, 13_000.0] } else { &[1_000.0, 2_500.0, 5_000.0, 8_000.0, 13_000.0] };
+    let reach = |reach_m: f64| Look { content: Content { reach_m, ..setting.look.content }, ..setting.look };
+    let unit = against("all within the near zone");
+    knobs.push(setting.knob("reach of what stands", "m", &unit, values(reaches, reach), &most, grey)?);
+
     tell("haze");
     let grade = |number: f64| if number < 0.5 { HazeGrade::Horizon } else { HazeGrade::Table };
     let haze = |number: f64| Look { haze: grade(number), ..setting.look };
