@@ -177,9 +177,8 @@ impl<'a> Cockpit<'a> {
             self.say = plan.say().to_vec();
             inputs::prepare(self.args, &mut scene)?;
             let seat = Seat::new(&self.world, &scene, self.args.camera);
-            if matches!(plan, Plan::Track { aircraft: Some(_), .. }) {
-                self.input.keyboard.set_throttle(scene.snapshot().controls.throttle);
-            }
+            // The lever begins where the flight has it: an aircraft that stands on a runway stays there.
+            self.input.keyboard.set_throttle(scene.controls().throttle);
             sim::lockstep(&mut scene, &ground, 1);
             // Held until the first picture is there.
             scene.clock.set_paused(true);
