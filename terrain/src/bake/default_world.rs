@@ -20,7 +20,7 @@ const AIRFIELDS: Bytes =
     Bytes { name: "airfields.csv", content: include_bytes!("../../../assets/worlds/issyk_kul/airfields.csv") };
 
 /// To be raised when the bake makes other posts, or another description, from the same input.
-const BAKE_VERSION: u32 = 4;
+const BAKE_VERSION: u32 = 5;
 
 /// The default world and where it is kept.
 pub struct DefaultWorld {
