@@ -1,8 +1,8 @@
-// overlay.wgsl: what is draped on the near ground: water, roads, railways, airfields and their paint.
+// overlay.wgsl: what is draped on the near ground: water, roads, railways, airfields and their paint; marks of events.
 // Reads:  group 0 frame; group 1 the window: table of blocks, light maps; water also ground maps and detail. Vertex buffer: terrain::block::overlay::Vertex.
 //         An instance is the slot of the block that the vertices belong to.
 // Writes: display colour blended over the ground; depth is tested and not written.
-// Host:   visual/src/passes/overlay.rs
+// Host:   visual/src/passes/overlay.rs, visual/src/passes/decals.rs
 // Twin:   kinds and packing: terrain::block::overlay (numbers compared in visual/tests/shader_contract.rs).
 // Invariant: a vertex lies in a triangle of level 0, placed from whole-number differences like a post; towards the eye it
 //         is moved in depth alone, by DEPTH_SHARE of its distance. The edges of what has a width are moved out along the
@@ -41,10 +41,15 @@ const RUNWAY_CONCRETE: u32 = 13u;
 const RUNWAY_GRAVEL: u32 = 14u;
 const RUNWAY_GRASS: u32 = 15u;
 const WHITE: u32 = 16u;
+const CRATER: u32 = 17u;
+const SCORCH: u32 = 18u;
 
 // Depth of a large triangle near the eye is interpolated to some 1e-5 of the distance; a crest hides what lies 1.5 m
 // behind it at 10 km.
 const DEPTH_SHARE: f32 = 1.5e-4;
+
+// Half the side of a mark's square, in its radii.
+const REACH_RADII: f32 = 3.0;
 
 // Roads are gone where one so wide would span a pixel.
 const ROAD_M: f32 = 9.0;
@@ -59,7 +64,7 @@ struct Draped {
     @location(3) relative_m: vec3<f32>,
     // Radiance of the sky mirrored in still water.
     @location(4) mirrored: vec3<f32>,
-    // Half the width and half the length, metres; 0: no edge to be smoothed.
+    // Half the width and half the length, metres; 0: no edge to be smoothed. Of a mark: its radius and its turn, radians.
     @location(5) @interpolate(flat) half_m: vec2<f32>,
     @location(6) @interpolate(flat) kind: u32,
     @location(7) @interpolate(flat) slot: vec2<f32>,
@@ -104,7 +109,9 @@ fn overlay_vertex(
     let half_m = f32(across >> 16u) / ACROSS_PER_METRE;
     var across_m = f32(bitcast<i32>(across << 16u) >> 16u) / ACROSS_PER_METRE;
     draped.half_m = vec2<f32>(half_m, 0.0);
-    if draped.kind == WHITE {
+    if draped.kind >= CRATER {
+        draped.half_m.y = f32(extra) * (6.2831853 / 1024.0);
+    } else if draped.kind == WHITE {
         draped.half_m.y = f32(extra) / EXTENT_PER_METRE;
     } else if half_m > 0.0 {
         let turn = f32(extra) * (6.2831853 / 1024.0);
@@ -246,6 +253,55 @@ fn runway(kind: u32, at_m: vec2<f32>, half_m: f32, pixel_m: vec2<f32>) -> vec3<f
     return albedo * (1.0 - 0.6 * min(along * across * streaks, 1.0));
 }
 
+const EARTH: vec3<f32> = vec3<f32>(0.155, 0.122, 0.088);
+const SOOT: vec3<f32> = vec3<f32>(0.022, 0.020, 0.018);
+
+// A mark's albedo and its cover, and how it bends the ground: a rise a metre, away from the middle.
+struct Mark {
+    colour: vec4<f32>,
+    rise: f32,
+}
+
+fn crater(at_m: vec2<f32>, radius_m: f32, turn: f32, pixel_m: f32) -> Mark {
+    let at = at_m / radius_m;
+    let away = length(at);
+    let pixel = pixel_m / radius_m;
+    let seed = turn * 37.0;
+    // The rim is no circle; rays of what was thrown out reach unevenly far.
+    let way = at / max(away, 1e-3);
+    let ragged = speck(way * 2.3 + seed) - 0.5 + 0.6 * (speck(way * 6.1 + seed) - 0.5);
+    let r = away * (1.0 + 0.16 * ragged);
+    let clods = grain(at * 3.0 + seed, 0.55, pixel) + 0.6 * grain(at * 3.0 - seed, 0.21, pixel);
+    var mark: Mark;
+    // The bowl and the rim of terrain::edit, its sides as steep as loose earth stays.
+    let outer = 1.0 / max(r * r * r * r, 1.0);
+    mark.rise = select(-0.22 * outer, 0.85 * r, r < 1.0) * smoothstep(3.0, 1.0, pixel);
+    let thrown = smoothstep(2.6 + 1.1 * ragged, 0.95, away);
+    let dust = mix(EARTH * 1.35, EARTH, smoothstep(0.7, 1.3, r));
+    var albedo = dust * (1.0 + 0.9 * clods);
+    // Darker where little light comes in, and sooty in the middle.
+    albedo *= mix(0.45 + 0.5 * smoothstep(0.1, 1.0, r), 1.0, step(1.0, r));
+    albedo = mix(albedo, SOOT * 2.0, 0.55 * smoothstep(0.75, 0.1, r));
+    let inside = 1.0 - smoothstep(1.05, 1.25, r);
+    let scattered = thrown * thrown * clamp(0.55 + 2.2 * clods + 0.9 * ragged, 0.0, 1.0);
+    mark.colour = vec4<f32>(albedo, max(inside, 0.85 * scattered));
+    return mark;
+}
+
+fn scorch(at_m: vec2<f32>, radius_m: f32, turn: f32, pixel_m: f32) -> Mark {
+    let at = at_m / radius_m;
+    let away = length(at);
+    let way = at / max(away, 1e-3);
+    let seed = turn * 37.0;
+    let ragged = speck(way * 2.0 + seed) - 0.5 + 0.7 * (speck(at * 1.7 + seed) - 0.5);
+    let cover = smoothstep(1.9, 0.35, away * (1.0 + 0.5 * ragged));
+    let ash = max(grain(at * 4.0 + seed, 0.6, pixel_m / radius_m), 0.0);
+    var mark: Mark;
+    mark.rise = 0.0;
+    mark.colour = vec4<f32>(SOOT * (1.0 + 3.0 * ash), cover * (0.92 - 0.5 * ash));
+    return mark;
+}
+
 @fragment
 fn overlay_fragment(draped: Draped) -> @location(0) vec4<f32> {
     let right = dpdx(draped.place_m);
@@ -256,6 +312,22 @@ fn overlay_fragment(draped: Draped) -> @location(0) vec4<f32> {
     let at_m = draped.place_m;
     let half_m = draped.half_m;
     let kind = draped.kind;
+
+    if kind >= CRATER {
+        let across_m = max(pixel_m.x, pixel_m.y);
+        var mark = scorch(at_m, half_m.x, half_m.y, across_m);
+        if kind == CRATER {
+            mark = crater(at_m, half_m.x, half_m.y, across_m);
+        }
+        // The right is at the turn; along is a quarter before it. On a rising side the normal leans back to the middle.
+        let right = vec2<f32>(cos(half_m.y), sin(half_m.y));
+        let out = at_m / max(length(at_m), 1e-3);
+        let outward = vec2<f32>(right.y, -right.x) * out.x + right * out.y;
+        let colour = lit(mark.colour.rgb, light, outward * -mark.rise);
+        // What is smaller than a pixel is its share of it.
+        let small = min(2.0 * REACH_RADII * half_m.x / across_m, 1.0);
+        return vec4<f32>(shown(colour, draped.haze, draped.clip.xy).rgb, mark.colour.a * small);
+    }
 
     var cover = 1.0;
     if half_m.x > 0.0 {

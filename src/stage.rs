@@ -6,6 +6,7 @@
 pub mod actors;
 pub mod cameras;
 pub mod effects;
+pub mod marks;
 
 use crate::hud::{self, Anchor, Engine, HudInput, Instruments, Sight, Store, WeaponPage};
 use crate::scenery::{self, Heavens, Scenery};
@@ -32,6 +33,8 @@ pub struct Captions<'a> {
     pub frame_ms: f64,
     /// States in capitals, after the simulation's own.
     pub status: &'a [&'a str],
+    /// Pitch and roll of a mouse that flies, -1..1.
+    pub mouse: Option<[f64; 2]>,
     /// What a pilot can do next.
     pub hint: &'a str,
 }
@@ -140,15 +143,15 @@ fn release(page: &scene::WeaponPage) -> String {
 
 /// What a rigid body's instruments show; a point mass has none but its angle of attack.
 fn instruments(snapshot: &Snapshot) -> Instruments {
-    let Some(of) = &snapshot.instruments else { return Instruments::default() };
+    let qnh_pa = Some(snapshot.air_data.setting_pa);
+    let Some(of) = &snapshot.instruments else { return Instruments { qnh_pa, ..Instruments::default() } };
     let levers = &snapshot.levers;
     let shown = |[now, most]: [f64; 2]| (most > 0.0).then_some([now, most]);
     Instruments {
         side_g: Some(of.side_g),
         alpha_rad: (snapshot.aircraft.airspeed_mps > 10.0).then_some(snapshot.aircraft.alpha_rad),
         stalling: of.stall_warning,
-        // Where the station's pressure is not told apart from the standard's, the altimeter needs no setting.
-        qnh_pa: None,
+        qnh_pa,
         engine: shown(of.rpm).map(|[rpm, most_rpm]| Engine {
             rpm,
             most_rpm,
@@ -217,8 +220,8 @@ pub fn hud(world: &World, snapshot: &Snapshot, seen: &Seen, heavens: &Heavens, c
         sight: sight(page, view),
     });
     let input = HudInput {
-        speed_mps: aircraft.airspeed_mps,
-        altitude_m: aircraft.position_m.y,
+        speed_mps: snapshot.air_data.airspeed_mps,
+        altitude_m: snapshot.air_data.altitude_m,
         height_above_ground_m: snapshot.height_above_ground_m,
         true_heading_rad: scenery::true_heading_rad(world, aircraft.position_m, angles.heading_rad),
         pitch_rad: angles.pitch_rad,
@@ -231,6 +234,7 @@ pub fn hud(world: &World, snapshot: &Snapshot, seen: &Seen, heavens: &Heavens, c
         date: &date,
         status: &status,
         hint: captions.hint,
+        mouse: captions.mouse,
         viewport_px: (view.size_px[0], view.size_px[1]),
         fov_y_rad: (view.top.atan() - view.bottom.atan()),
         instruments: instruments(snapshot),

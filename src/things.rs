@@ -9,6 +9,7 @@ use glam::{DVec2, DVec3};
 use std::path::Path;
 use std::sync::Arc;
 use terrain::block::Landscape;
+use terrain::block::overlay::decal::Decal;
 use terrain::block::rings::NEAR_RADIUS_M;
 use terrain::edit::Changed;
 use terrain::features::index::ObjectIndex;
@@ -18,6 +19,7 @@ use visual::models::Mesh;
 use visual::models::things::Model;
 use visual::particles::Emitter;
 use visual::passes::canopy::{CanopyCounts, CanopyPass};
+use visual::passes::decals::DecalPass;
 use visual::passes::lights::{Dark, Lights, Reach};
 use visual::passes::objects::{ObjectCounts, ObjectInstance, Objects};
 use visual::passes::overlay::{OverlayPass, OverlaySettings};
@@ -32,6 +34,7 @@ const TOWNS_REACH_M: f64 = 45_000.0;
 /// See the module.
 pub struct Things {
     overlay: Option<OverlayPass>,
+    decals: DecalPass,
     plants: Option<Plants>,
     canopy: Option<CanopyPass>,
     objects: Option<Objects>,
@@ -72,6 +75,7 @@ impl Things {
             .objects
             .then(|| Objects::new(gpu, frame, ground, format, grid, standing.clone(), near_m, look.wait));
         let particles = Particles::new(frame, format);
+        let decals = DecalPass::new(frame, ground, format, landscape.ground.field().clone());
         let lights = look.content.lights.then(|| {
             let reach_m = f64::from(look.window.saturating_sub(2)) * 0.5 * grid.block_m();
             let reach = Reach { airfields_m: reach_m, towns_m: reach_m.min(TOWNS_REACH_M), wait: look.wait };
@@ -81,7 +85,7 @@ impl Things {
         });
         let overlay = overlay.flatten();
         let lights = lights.flatten();
-        Self { overlay, plants, canopy, objects, own_models: Vec::new(), particles, lights, latitude_rad }
+        Self { overlay, decals, plants, canopy, objects, own_models: Vec::new(), particles, lights, latitude_rad }
     }
 
     /// Takes over a new version of the ground: what stands where it changed is placed anew. `moved` are the middles in plan of
@@ -96,6 +100,7 @@ impl Things {
         if let Some(overlay) = &mut self.overlay {
             overlay.set_landscape(landscape.clone(), changed);
         }
+        self.decals.set_field(landscape.ground.field().clone());
         if self.plants.is_some() || self.canopy.is_some() {
             let nursery = Arc::new(Nursery::new(landscape.clone(), self.latitude_rad));
             if let Some(plants) = &mut self.plants {
@@ -120,6 +125,7 @@ impl Things {
             overlay.follow(gpu, eye_m, speed_mps);
             overlay.prepare(0, view, terrain);
         }
+        self.decals.prepare(gpu, 0, terrain);
         if let Some(plants) = &mut self.plants {
             plants.follow(eye_m, speed_mps);
             plants.prepare(gpu, 0, view);
@@ -162,6 +168,7 @@ impl Things {
                 if let Some(overlay) = &self.overlay {
                     overlay.draw(view_index, terrain, pass);
                 }
+                self.decals.draw(view_index, terrain, pass);
             }
             Layer::Blended => {
                 if let Some(lights) = &self.lights {
@@ -193,6 +200,16 @@ impl Things {
     /// What tracers, smoke and fire the next pictures show.
     pub fn set_particles(&mut self, emitters: Vec<Emitter>) {
         self.particles.set(emitters);
+    }
+
+    /// Marks that events left on the ground, drawn from the next followed view on.
+    pub fn add_decals(&mut self, decals: Vec<Decal>) {
+        self.decals.add(decals);
+    }
+
+    /// Takes all marks away.
+    pub fn clear_decals(&mut self) {
+        self.decals.clear();
     }
 
     /// Takes the shapes that a world's folder has of its own.
@@ -242,5 +259,6 @@ impl Things {
             + self.objects.as_ref().map_or(0, Objects::gpu_bytes)
             + self.lights.as_ref().map_or(0, Lights::gpu_bytes)
             + self.particles.gpu_bytes()
+            + self.decals.gpu_bytes()
     }
 }

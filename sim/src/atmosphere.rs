@@ -197,6 +197,24 @@ pub fn density_kgpm3(altitude_m: f64) -> f64 {
     standard_layers().at(altitude_m).density_kgpm3
 }
 
+/// Geopotential height at which the standard atmosphere has a pressure, metres: what an altimeter reads. A pressure that
+/// is none, or less than any layer has, counts as that of 200 km.
+pub fn standard_height_m(pressure_pa: f64) -> f64 {
+    const HIGHEST_M: f64 = 200_000.0;
+    let bases = &standard_layers().bases;
+    if pressure_pa.is_nan() || pressure_pa <= 0.0 {
+        return HIGHEST_M;
+    }
+    let layer = (0..bases.len()).rev().find(|layer| pressure_pa <= bases[*layer].1).unwrap_or(0);
+    let ((base_m, lapse_kpm), (base_k, base_pa)) = (LAYERS[layer], bases[layer]);
+    let up_m = if lapse_kpm == 0.0 {
+        -GAS_JPKGK * base_k / GRAVITY_MPS2 * (pressure_pa / base_pa).ln()
+    } else {
+        base_k / lapse_kpm * ((pressure_pa / base_pa).powf(-GAS_JPKGK * lapse_kpm / GRAVITY_MPS2) - 1.0)
+    };
+    (base_m + up_m).min(HIGHEST_M)
+}
+
 /// Pressure over that at the base, `up_m` geopotential metres above it.
 #[inline]
 fn fall(base_k: f64, lapse_kpm: f64, up_m: f64) -> f64 {

@@ -13,6 +13,7 @@
 //! position, [`HeightAt`], that answers `None` where there is no data.
 #![forbid(unsafe_code)]
 
+pub mod air_data;
 pub mod aircraft;
 pub mod atmosphere;
 pub mod autopilot;

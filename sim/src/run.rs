@@ -6,7 +6,7 @@
 
 use crate::aircraft::AircraftState;
 use crate::clock::MAX_FRAME_S;
-use crate::input::{Command, Controls};
+use crate::input::{Command, Controls, Hands};
 use crate::scene::{self, Scene, SceneGround};
 use crate::snapshot::Snapshot;
 use crate::track::Track;
@@ -88,7 +88,16 @@ impl SimThread {
     ///
     /// # Errors
     /// The system's, if it gives no thread.
-    pub fn start(mut scene: Scene, ground: SceneGround) -> std::io::Result<Self> {
+    pub fn start(scene: Scene, ground: SceneGround) -> std::io::Result<Self> {
+        Self::start_with(scene, ground, None)
+    }
+
+    /// The same in a pilot's hands: they are asked before each step, so that none waits for a picture. What they command
+    /// beside axes and levers waits for who takes it ([`Hands::take_commands`]).
+    ///
+    /// # Errors
+    /// The system's, if it gives no thread.
+    pub fn start_with(mut scene: Scene, ground: SceneGround, hands: Option<Hands>) -> std::io::Result<Self> {
         scene.look_down(&ground);
         let first = Arc::new(scene.snapshot());
         let published = Published { before: first.clone(), last: first, fraction: 0.0, at: Instant::now() };
@@ -97,7 +106,7 @@ impl SimThread {
         let step_s = scene.clock.step_s();
         let shared = published.clone();
         let builder = std::thread::Builder::new().name("simulation".to_owned());
-        let thread = builder.spawn(move || drive(scene, ground, &inbox, &shared))?;
+        let thread = builder.spawn(move || drive(scene, ground, hands, &inbox, &shared))?;
         Ok(Self { messages, published, thread: Some(thread), step_s })
     }
 
@@ -162,7 +171,13 @@ fn order(scene: &mut Scene, command: scene::Command) {
     let _ = scene.order(command);
 }
 
-fn drive(mut scene: Scene, mut ground: SceneGround, inbox: &Receiver<Message>, shared: &Mutex<Published>) -> Scene {
+fn drive(
+    mut scene: Scene,
+    mut ground: SceneGround,
+    hands: Option<Hands>,
+    inbox: &Receiver<Message>,
+    shared: &Mutex<Published>,
+) -> Scene {
     let mut then = Instant::now();
     loop {
         let step_s = scene.clock.step_s() / scene.clock.rate();
@@ -193,6 +208,15 @@ fn drive(mut scene: Scene, mut ground: SceneGround, inbox: &Receiver<Message>, s
             }
             changed = true;
             next = inbox.try_recv().ok();
+        }
+        if let Some(hands) = &hands {
+            let (controls, levers) = hands.poll(&scene.levers());
+            if controls != scene.controls() {
+                scene.set_controls(controls);
+            }
+            if let Some(levers) = levers {
+                scene.set_levers(levers);
+            }
         }
         let now = Instant::now();
         let due = scene.clock.advance(now.duration_since(then).as_secs_f64());

@@ -3,6 +3,7 @@
 //! It is all that a renderer or a report may know. Invariant: its numbers are finite, and its hash depends on nothing
 //! but the state and the inputs before it.
 
+use crate::air_data::AirData;
 use crate::aircraft::AircraftState;
 use crate::input::{Controls, Levers};
 use crate::scene::{EntityView, Event, FNV_BASIS, Instruments, WeaponPage, fnv, interpolated};
@@ -90,6 +91,8 @@ pub struct Snapshot {
     pub levers: Levers,
     /// Instruments of an own aircraft that is a rigid body. Not part of the hash: they follow from the rest.
     pub instruments: Option<Instruments>,
+    /// What the own aircraft's air tells it. Not part of the hash.
+    pub air_data: AirData,
 }
 
 impl Flags {

@@ -10,6 +10,7 @@ use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::report::Fly;
 use crate::scenery::{Look, Scenery};
+use crate::stage::marks::Marks;
 use crate::stage::{self, Captions, Seat, Sun};
 use sim::clock::DEFAULT_STEP_HZ;
 use std::sync::Arc;
@@ -35,7 +36,8 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
     let plan = Plan::new(args, length, LOCKSTEP_HZ, &world, &scenery.area)?;
     let length = length.scripted(args, &plan);
     let date = plan.date(args, &world)?;
-    let ground = scenery.scene_ground();
+    let mut ground = scenery.scene_ground();
+    let mut marks = Marks::default();
     let mut scene = plan.scene(&world, date, args.inputs.is_none())?;
     inputs::prepare(args, &mut scene)?;
     let mut seat = Seat::new(&world, &scene, args.camera);
@@ -51,11 +53,17 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
     let mut steps = 0;
     let bar = Progress::new("flying");
     for frame in 0..frames {
-        let mut snapshot = sim::lockstep(&mut scene, &ground, 1);
-        sim_hash.add(snapshot.hash());
-        for _ in 1..STEPS {
-            snapshot = sim::lockstep(&mut scene, &ground, 1);
+        let mut step = || {
+            let snapshot = sim::lockstep(&mut scene, &ground, 1);
             sim_hash.add(snapshot.hash());
+            if let Some(other) = marks.leave(&snapshot, &mut scenery) {
+                ground = other;
+            }
+            snapshot
+        };
+        let mut snapshot = step();
+        for _ in 1..STEPS {
+            snapshot = step();
         }
         steps = snapshot.step;
         let seen = seat.view(&mut scenery, &snapshot, look.size_px);

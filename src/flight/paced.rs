@@ -16,6 +16,7 @@ use crate::output;
 use crate::progress::Progress;
 use crate::report::{self, Fly};
 use crate::scenery::{Look, Scenery};
+use crate::stage::marks::Marks;
 use crate::stage::{self, Captions, Seat, Sun};
 use sim::SimThread;
 use sim::run::Message;
@@ -57,12 +58,16 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     let period = Duration::from_secs_f64(1.0 / hz);
 
     let mut record = Record::new(started, false);
+    let mut marks = Marks::default();
     let mut frame_ms = f64::NAN;
     let mut begun = Instant::now();
     let bar = Progress::new("flying");
     loop {
         let frame_start = Instant::now();
         let snapshot = sim.now();
+        if let Some(other) = marks.leave(&snapshot, &mut scenery) {
+            sim.send(Message::Ground(other));
+        }
         let seen = seat.view(&mut scenery, &snapshot, look.size_px);
         let view = &seen.view;
         let heavens = sun.at(&world, snapshot.date);

@@ -13,6 +13,7 @@ use crate::progress::Progress;
 use crate::scenery::{Look, Scenery};
 use crate::stage::cameras::Camera;
 use crate::stage::effects::Effects;
+use crate::stage::marks::Marks;
 use crate::stage::{self, Captions, Seat, Sun};
 use sim::situation::Moment;
 use sim::{Snapshot, UtcTime};
@@ -35,9 +36,6 @@ pub struct Taken {
     pub hash: RunningHash,
 }
 
-/// Steps between two looks for events, which are told for a while only.
-const STEPS_A_LOOK: u32 = 30;
-
 /// Takes the plan's pictures at a date, on the device of the flight's scenery, which ends here. A situation is flown once
 /// more, by its script or by the inputs that are played.
 ///
@@ -51,13 +49,14 @@ pub fn take(flown: Scenery, plan: &Plan, args: &FlyArgs, date: UtcTime) -> Resul
     let look = Look { wait: true, keep_depth: false, ..look };
     let mut scenery = Scenery::new(gpu.clone(), capture::FORMAT, world.clone(), look);
     scenery.things.use_models(&gpu, own_models);
-    let ground = scenery.scene_ground();
+    let mut ground = scenery.scene_ground();
     let mut scene = plan.scene(&world, date, args.inputs.is_none())?;
     inputs::prepare(args, &mut scene)?;
     let mut album = Album {
         bar: Progress::new("taking pictures"),
         seat: Seat::new(&world, &scene, args.camera),
         effects: Effects::default(),
+        marks: Marks::default(),
         sun: Sun::new(&world, date)?,
         target: Offscreen::new(&scenery.gpu, look.size_px).map_err(device_failed)?,
         scenery,
@@ -86,9 +85,11 @@ pub fn take(flown: Scenery, plan: &Plan, args: &FlyArgs, date: UtcTime) -> Resul
                 album.bar.show(number as f64 / moments.len() as f64);
                 let at = (moment.at_s * hz).round() as u64;
                 while scene.clock.step() < at {
-                    let steps = (at - scene.clock.step()).min(u64::from(STEPS_A_LOOK)) as u32;
-                    let snapshot = sim::lockstep(&mut scene, &ground, steps);
+                    let snapshot = sim::lockstep(&mut scene, &ground, 1);
                     album.effects.of(&snapshot);
+                    if let Some(other) = album.marks.leave(&snapshot, &mut album.scenery) {
+                        ground = other;
+                    }
                     album.seat.cameras.follow_weapon(&snapshot);
                 }
                 let camera = moment.camera.as_deref().map_or(Ok(args.camera), |name| {
@@ -98,6 +99,9 @@ pub fn take(flown: Scenery, plan: &Plan, args: &FlyArgs, date: UtcTime) -> Resul
                 })?;
                 album.seat.cameras.set(camera);
                 let snapshot = sim::lockstep(&mut scene, &ground, 1);
+                if let Some(other) = album.marks.leave(&snapshot, &mut album.scenery) {
+                    ground = other;
+                }
                 album.add(&snapshot, &moment.name)?;
             }
         }
@@ -111,6 +115,7 @@ struct Album<'a> {
     scenery: Scenery,
     seat: Seat,
     effects: Effects,
+    marks: Marks,
     sun: Sun,
     target: Offscreen,
     folder: &'a Path,
@@ -128,7 +133,8 @@ impl Album<'_> {
         let heavens = self.sun.at(&world, snapshot.date);
         for _ in 0..MOST_UPDATES {
             scenery.follow(&seen.view, 0.0, heavens);
-            if !scenery.terrain.window().is_jumping() && scenery.terrain.window().late_blocks() == 0 {
+            let window = scenery.terrain.window();
+            if !window.is_jumping() && !window.is_changing() && window.late_blocks() == 0 {
                 break;
             }
         }

@@ -9,6 +9,7 @@ use crate::scenery::{Heavens, Scenery};
 use crate::stage::{self, effects::Effects};
 use glam::DVec3;
 use sim::Snapshot;
+use sim::clock::DEFAULT_STEP_HZ;
 use std::time::{Duration, Instant};
 use terrain::BlockIndex;
 use terrain::thread_time;
@@ -61,6 +62,7 @@ pub struct Record {
     distance_m: f64,
     block_crossings: u64,
     latency_ms: Vec<f64>,
+    sampled_ms: Vec<f64>,
     mesh: RunningHash,
     is_repeatable: bool,
     updated: bool,
@@ -98,6 +100,7 @@ impl Record {
             distance_m: 0.0,
             block_crossings: 0,
             latency_ms: Vec::new(),
+            sampled_ms: Vec::new(),
             mesh: RunningHash::default(),
             is_repeatable,
             updated: false,
@@ -178,6 +181,11 @@ impl Record {
         self.latency_ms.push(milliseconds(took));
     }
 
+    /// Adds the time from an input to the sampling of the first frame that shows it.
+    pub fn add_sampled(&mut self, took: Duration) {
+        self.sampled_ms.push(milliseconds(took));
+    }
+
     /// Frames so far.
     pub fn frames(&self) -> u64 {
         self.frames
@@ -191,8 +199,12 @@ impl Record {
         let (plants, canopy) = scenery.things.plants_drawn();
         let landscape = window.landscape();
         let build = window.build_cost();
-        let mut latency_ms = self.latency_ms.clone();
-        latency_ms.sort_by(f64::total_cmp);
+        let sorted = |of: &[f64]| {
+            let mut of = of.to_vec();
+            of.sort_by(f64::total_cmp);
+            of
+        };
+        let (latency_ms, sampled_ms) = (sorted(&self.latency_ms), sorted(&self.sampled_ms));
         let mut update_ms = self.update_cpu_ms.clone();
         update_ms.sort_by(f64::total_cmp);
         let [width_px, height_px] = scenery.look.size_px;
@@ -218,6 +230,13 @@ impl Record {
             frame_ms: FrameMs::of(&self.frame_ms),
             start_ms: self.start_ms,
             latency_ms: quantile(&latency_ms, 0.5),
+            latency: quantile(&sampled_ms, 0.5).map(|median| report::Latency {
+                inputs: sampled_ms.len() as u64,
+                shown_ms_max: latency_ms.last().copied(),
+                sampled_ms_median: median,
+                sampled_ms_max: sampled_ms.last().copied().unwrap_or(median),
+                step_ms: 1e3 / f64::from(DEFAULT_STEP_HZ),
+            }),
             visibility_m: scenery.visibility_m(),
             terrain: Terrain {
                 window: window.settings().blocks,

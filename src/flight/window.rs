@@ -1,8 +1,9 @@
-//! A window: the pilot's flight, against the wall clock, with keyboard and stick.
+//! A window: the pilot's flight, against the wall clock, with keyboard, mouse and stick.
 //!
 //! It begins on the built-in track, so that there is something to see at once; the first move of a stick or an arrow key
-//! takes over. The eye is sampled after the input was read and after the next image has been waited for, right before the
-//! frame is encoded. A frame's time is from one frame's beginning to the next's.
+//! takes over. The devices are asked by the simulation's thread before each of its steps, so an input waits for a step and not
+//! for a picture; the eye is sampled after the next image has been waited for, right before the frame is encoded. A frame's time
+//! is from one frame's beginning to the next's. Latency is measured from an input that moves controls which were at rest.
 
 use super::inputs;
 use super::plan::{LOCKSTEP_HZ, Length, Plan};
@@ -13,11 +14,11 @@ use crate::output;
 use crate::report::{self, Fly};
 use crate::scenery::{Heavens, Look, Scenery};
 use crate::stage::cameras::Camera;
+use crate::stage::marks::Marks;
 use crate::stage::{self, Captions, Seat, Sun};
 use crate::sticks;
-use sim::input::Input;
 use sim::input::joystick::Joystick;
-use sim::input::keyboard::Keyboard;
+use sim::input::{Hands, Input};
 use sim::run::Message;
 use sim::{Command, Controls, Mode, SimThread, Snapshot};
 use std::path::PathBuf;
@@ -40,11 +41,14 @@ const HELPED: Duration = Duration::from_secs(60);
 const TOLD: Duration = Duration::from_secs(8);
 /// An input that shows no effect this long has none (time stands still).
 const NO_EFFECT: Duration = Duration::from_secs(1);
+/// How far the head turns with half the window's height of the mouse, radians.
+const LOOK_RAD: f64 = 1.2;
 /// Weight of the last frame in the frame time shown: figures that can be read.
 const SMOOTHING: f64 = 0.1;
 
 const HINT_TRACK: &str = "STICK OR ARROW KEYS: FLY YOURSELF   P PAUSE   C CAMERA   H DISPLAY   F12 PICTURE   ESC QUIT";
-const HINT_PILOT: &str = "PGUP PGDN THRUST   C CAMERA   R RESET   T TRACK   Y SLEW   [ ] HOUR   , . MONTH";
+const HINT_PILOT: &str =
+    "PGUP PGDN THRUST   O MOUSE STICK   C CAMERA   R RESET   T TRACK   Y SLEW   [ ] HOUR   , . MONTH";
 const HINT_CRASHED: &str = "R RESET   Y SLEW";
 const HINT_SLEW: &str = "ARROWS MOVE AND TURN   PGUP PGDN CLIMB   Y FLY FROM HERE";
 
@@ -84,13 +88,14 @@ struct Cockpit<'a> {
     /// Made anew with each device.
     stage: Option<(Scenery, TextureFormat)>,
     flown: Option<Flown>,
-    input: Input,
+    hands: Hands,
+    size_px: [u32; 2],
     hud_shown: bool,
     record: Record,
     last_frame: Option<Instant>,
     frame_ms: f64,
-    /// Until a picture shows it.
-    awaited: Option<Awaited>,
+    /// Controls that the last picture showed.
+    seen: Option<Controls>,
     /// An input whose picture is on its way to the screen.
     shown: Option<Instant>,
     picture_wanted: bool,
@@ -100,19 +105,12 @@ struct Cockpit<'a> {
     say: Vec<String>,
 }
 
-/// The press of an axis key.
-struct Awaited {
-    since: Instant,
-    axis: fn(&Controls) -> f64,
-    /// Where the axis stood.
-    before: f64,
-}
-
 /// What begins with the first device.
 struct Flown {
     sim: SimThread,
     seat: Seat,
     sun: Sun,
+    marks: Marks,
     /// When the first picture was there.
     begun: Option<Instant>,
     /// When the pilot took over from the track.
@@ -130,12 +128,13 @@ impl<'a> Cockpit<'a> {
             world,
             stage: None,
             flown: None,
-            input: Input::new(joystick, Controls::default().throttle),
+            hands: Hands::new(Input::new(joystick, Controls::default().throttle)),
+            size_px: [args.view.size.width_px, args.view.size.height_px],
             hud_shown: true,
             record: Record::new(started, false),
             last_frame: None,
             frame_ms: f64::NAN,
-            awaited: None,
+            seen: None,
             shown: None,
             picture_wanted: false,
             pictures: Vec::new(),
@@ -178,15 +177,18 @@ impl<'a> Cockpit<'a> {
             inputs::prepare(self.args, &mut scene)?;
             let seat = Seat::new(&self.world, &scene, self.args.camera);
             // The lever begins where the flight has it: an aircraft that stands on a runway stays there.
-            self.input.keyboard.set_throttle(scene.controls().throttle);
+            let throttle = scene.controls().throttle;
+            self.hands.with(|input| input.keyboard.set_throttle(throttle));
             sim::lockstep(&mut scene, &ground, 1);
             // Held until the first picture is there.
             scene.clock.set_paused(true);
             self.flown = Some(Flown {
-                sim: SimThread::start(scene, ground)
+                // Inputs that are played have the controls to themselves.
+                sim: SimThread::start_with(scene, ground, self.args.inputs.is_none().then(|| self.hands.clone()))
                     .map_err(|error| Failure::while_doing("starting the simulation", error))?,
                 seat,
                 sun: Sun::new(&self.world, date)?,
+                marks: Marks::default(),
                 begun: None,
                 taken_over: None,
                 taking_over: false,
@@ -201,18 +203,38 @@ impl<'a> Cockpit<'a> {
         match event {
             Event::CloseRequested => return Flow::Close,
             Event::Key { name, down, repeat: false } => {
-                // The latest axis key is the one whose picture is waited for; other keys move no controls.
-                if down && let (Some(axis), Some(flown)) = (Keyboard::axis(&name), &self.flown) {
-                    let before = axis(&flown.sim.last_two().1.controls);
-                    self.awaited = Some(Awaited { since: Instant::now(), axis, before });
-                }
-                if let Some(command) = self.input.keyboard.key(&name, down) {
+                if let Some(command) = self.hands.with(|input| input.keyboard.key(&name, down)) {
                     return self.command(command);
                 }
             }
+            Event::MouseMoved { x_px, y_px } => {
+                let [width_px, height_px] = self.size_px.map(|edge| 0.5 * f64::from(edge.max(1)));
+                let at = [(x_px - width_px) / height_px, (y_px - height_px) / height_px];
+                let [right, up] = self.hands.with(|input| {
+                    input.mouse.moved(at[0], at[1]);
+                    input.mouse.take_turn()
+                });
+                if let Some(flown) = self.flown.as_mut().filter(|_| right != 0.0 || up != 0.0) {
+                    flown.seat.head.turn(right * LOOK_RAD, up * LOOK_RAD);
+                }
+            }
+            Event::MouseButton { number: 0, down } if self.hands.with(|input| input.mouse.flies()) => {
+                return self.command(if down { Command::Trigger } else { Command::TriggerEnd });
+            }
+            Event::MouseButton { number: 1, down } => {
+                self.hands.with(|input| input.mouse.look(down));
+                if !down {
+                    return self.command(Command::LookEnd);
+                }
+            }
+            Event::MouseButton { number: 2, down: true } => return self.command(Command::MouseStick),
+            Event::Wheel { lines } => self.hands.with(|input| input.mouse.wheel(f64::from(lines))),
             Event::Focused(false) => {
                 // Keys let go elsewhere are not told of.
-                self.input.keyboard.release_all();
+                self.hands.with(|input| {
+                    input.keyboard.release_all();
+                    input.mouse.release();
+                });
                 if let Some(flown) = &mut self.flown {
                     flown.seat.head.command(Command::LookEnd);
                 }
@@ -242,6 +264,12 @@ impl<'a> Cockpit<'a> {
         match command {
             Command::Quit => return Flow::Close,
             Command::Hud => self.hud_shown = !self.hud_shown,
+            Command::MouseStick => {
+                let flies = self.hands.with(|input| input.mouse.take_or_give_back());
+                let told =
+                    if flies { "MOUSE FLIES   WHEEL THRUST   LEFT TRIGGER   RIGHT LOOK" } else { "MOUSE LET GO" };
+                self.message = Some((told.to_owned(), Instant::now()));
+            }
             Command::Screenshot => self.picture_wanted = true,
             Command::Wireframe => ground(self, |look| look.wireframe = !look.wireframe),
             Command::BlockOverlay => ground(self, |look| look.overlay = !look.overlay),
@@ -264,8 +292,13 @@ impl<'a> Cockpit<'a> {
             self.frame_ms =
                 if self.frame_ms.is_finite() { self.frame_ms + SMOOTHING * (ms - self.frame_ms) } else { ms };
         }
-        let (controls, commands) = self.input.poll(wall_s);
-        for command in commands {
+        self.size_px = size_px;
+        let is_played = self.args.inputs.is_some();
+        if is_played {
+            // Nobody else asks them; what they command of the picture counts all the same.
+            self.hands.poll(&sim::input::Levers::default());
+        }
+        for command in self.hands.take_commands() {
             if self.command(command) == Flow::Close {
                 return Ok(Flow::Close);
             }
@@ -276,13 +309,20 @@ impl<'a> Cockpit<'a> {
         if !flown.sim.is_running() {
             return Err(Failure::Failed("the simulation stopped by itself".to_owned()));
         }
-        // Inputs that are played have the controls to themselves.
-        if self.args.inputs.is_none() {
-            flown.hear(controls);
+        if !is_played {
+            flown.hear(self.hands.controls());
         }
         flown.seat.head.update(wall_s);
 
         let snapshot = flown.sim.now();
+        let moved = self.seen.replace(snapshot.controls).is_some_and(|before| before != snapshot.controls);
+        if let Some(input) = self.hands.take_moved_if(moved).filter(|input| input.elapsed() < NO_EFFECT) {
+            self.record.add_sampled(input.elapsed());
+            self.shown = Some(input);
+        }
+        if let Some(other) = flown.marks.leave(&snapshot, scenery) {
+            flown.sim.send(Message::Ground(other));
+        }
         let seen = flown.seat.view(scenery, &snapshot, size_px);
         let view = &seen.view;
         let heavens = flown.sun.at(&self.world, snapshot.date);
@@ -296,6 +336,7 @@ impl<'a> Cockpit<'a> {
             let captions = Captions {
                 frame_ms: self.frame_ms,
                 status: &status,
+                mouse: self.hands.with(|input| input.mouse.flies().then(|| input.mouse.stick())),
                 hint: flown.told(&self.say).unwrap_or_else(|| flown.hint(&snapshot)),
             };
             stage::hud(&self.world, &snapshot, &seen, &heavens, captions)
@@ -304,14 +345,6 @@ impl<'a> Cockpit<'a> {
         };
         let picture = self.picture_wanted.then(|| hud.clone());
         scenery.draw(view, heavens, snapshot.time_s, hud, target).map_err(super::device_failed)?;
-        if let Some(Awaited { since, axis, before }) = self.awaited {
-            if axis(&snapshot.controls) != before {
-                self.shown = Some(since);
-            }
-            if self.shown.is_some() || since.elapsed() > NO_EFFECT {
-                self.awaited = None;
-            }
-        }
         if self.record.frames() == 0 {
             // The first picture counts when it is there, and time runs from then.
             gpu.wait().map_err(super::device_failed)?;
@@ -385,7 +418,7 @@ impl<'a> Cockpit<'a> {
 }
 
 impl Flown {
-    /// Passes the controls on; a stick that is moved takes over from the track.
+    /// A stick that is moved takes over from the track.
     fn hear(&mut self, controls: Controls) {
         let on_track = self.sim.last_two().1.flags.mode == Mode::Track;
         let stick = controls.pitch.abs().max(controls.roll.abs()).max(controls.yaw.abs());
@@ -397,7 +430,6 @@ impl Flown {
         if !on_track {
             self.taking_over = false;
         }
-        self.sim.send(Message::Controls(controls));
     }
 
     /// Whether wall time was dropped in the last second.

@@ -70,9 +70,9 @@ pub fn text_width(text: &str) -> f32 {
 /// All that is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HudInput<'a> {
-    /// Indicated speed where there are instruments, else through the air, m/s.
+    /// Indicated airspeed, m/s.
     pub speed_mps: f64,
-    /// Above mean sea level, metres.
+    /// As the altimeter reads it, metres.
     pub altitude_m: f64,
     /// Above the ground, metres; `None` where there is none.
     pub height_above_ground_m: Option<f64>,
@@ -98,6 +98,8 @@ pub struct HudInput<'a> {
     pub status: &'a [&'a str],
     /// What the pilot can do next, one line.
     pub hint: &'a str,
+    /// Pitch and roll of a mouse that flies, -1..1, back and right positive.
+    pub mouse: Option<[f64; 2]>,
     /// Width and height, pixels.
     pub viewport_px: (u32, u32),
     /// Vertical field of view, radians.
@@ -126,7 +128,7 @@ pub fn hud(input: &HudInput) -> (Vec<HudLine>, Vec<HudText>) {
     }
     tapes::heading_tape(&mut sheet, input.true_heading_rad);
     let speed_kmph = input.speed_mps * 3.6;
-    tapes::side_tape(&mut sheet, Side::Left, speed_kmph, 10.0, 50.0, 0.8, "KM/H");
+    tapes::side_tape(&mut sheet, Side::Left, speed_kmph, 10.0, 50.0, 0.8, "IAS KM/H");
     tapes::side_tape(&mut sheet, Side::Right, input.altitude_m, 20.0, 100.0, 0.4, "M");
     numbers::numbers(&mut sheet, input);
     panel::panel(&mut sheet, &input.instruments);

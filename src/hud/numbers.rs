@@ -31,6 +31,10 @@ pub(super) fn numbers(sheet: &mut Sheet, input: &HudInput) {
         sheet.text([0.0, -150.0], LARGE, "STALL", Anchor::Centre, AMBER);
     }
 
+    if let Some([pitch, roll]) = input.mouse.filter(|stick| stick.iter().all(|part| part.is_finite())) {
+        stick(sheet, pitch, roll);
+    }
+
     let date: String = input.date.chars().take(40).collect();
     sheet.text([-620.0, 340.0], SMALL, &date, Anchor::Left, DIM);
     // Where frames are not timed there is nothing to say.
@@ -44,6 +48,21 @@ pub(super) fn numbers(sheet: &mut Sheet, input: &HudInput) {
     let status = input.status.iter().take(8).copied().collect::<Vec<_>>().join("  ");
     let status: String = status.chars().take(80).collect();
     sheet.text([0.0, 300.0], LARGE, &status, Anchor::Centre, AMBER);
+}
+
+/// Where a mouse that flies holds the stick, as seen from above: a cross in a box.
+fn stick(sheet: &mut Sheet, pitch: f64, roll: f64) {
+    const MIDDLE: [f64; 2] = [-430.0, 276.0];
+    const HALF: f64 = 34.0;
+    let [x, y] = MIDDLE;
+    sheet.line(
+        &[[x - HALF, y - HALF], [x + HALF, y - HALF], [x + HALF, y + HALF], [x - HALF, y + HALF], [x - HALF, y - HALF]],
+        1.4,
+        DIM,
+    );
+    let at = [x + HALF * roll.clamp(-1.0, 1.0), y + HALF * pitch.clamp(-1.0, 1.0)];
+    sheet.line(&[[at[0] - 6.0, at[1]], [at[0] + 6.0, at[1]]], 1.8, GREEN);
+    sheet.line(&[[at[0], at[1] - 6.0], [at[0], at[1] + 6.0]], 1.8, GREEN);
 }
 
 /// A number with so many digits, dashes if it is none.

@@ -18,6 +18,7 @@ fn level() -> HudInput<'static> {
         date: "2026-06-21 06:30 UTC",
         status: &["PAUSED", "SLEW"],
         hint: "ESC QUIT",
+        mouse: Some([0.3, -0.5]),
         viewport_px: (1280, 720),
         fov_y_rad: 60f64.to_radians(),
         instruments: Instruments {

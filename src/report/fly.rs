@@ -23,6 +23,8 @@ pub struct Fly {
     pub start_ms: f64,
     /// From a control input to the picture that shows it.
     pub latency_ms: Option<f64>,
+    /// Where the time goes from an input to the picture that shows it; none without an input.
+    pub latency: Option<Latency>,
     /// Visibility drawn, after it was clamped to the range of the window.
     pub visibility_m: f64,
     /// The ground as drawn.
@@ -41,6 +43,21 @@ pub struct Fly {
     pub shots: Vec<String>,
     /// Most memory the process held.
     pub peak_rss_mib: Option<f64>,
+}
+
+/// From inputs that moved controls at rest, by the system's own time of them, to pictures.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Latency {
+    /// Inputs measured.
+    pub inputs: u64,
+    /// Longest until the picture was presented; the median is `latency_ms`.
+    pub shown_ms_max: Option<f64>,
+    /// Until the eye of the first frame that shows it was sampled: the program's own making, at most a step and a frame.
+    pub sampled_ms_median: f64,
+    /// Longest of these.
+    pub sampled_ms_max: f64,
+    /// A step of the simulation.
+    pub step_ms: f64,
 }
 
 /// The world of a report.

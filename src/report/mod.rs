@@ -20,8 +20,8 @@ mod world;
 
 pub use bench::{Bench, BenchResult, Skipped, Yardstick};
 pub use fly::{
-    Adapter, BuildCpuMs, Fly, FrameMs, MemoryBytes, Plants, Sim, Terrain, Track, UpdateCpuMs, UploadBytes, World,
-    quantile,
+    Adapter, BuildCpuMs, Fly, FrameMs, Latency, MemoryBytes, Plants, Sim, Terrain, Track, UpdateCpuMs, UploadBytes,
+    World, quantile,
 };
 pub use gallery::Gallery;
 pub use height::{HeightPoint, Heights};
@@ -86,7 +86,7 @@ mod tests {
             names(&Fly::default()),
             "world.name world.size_km world.step_m adapter.name adapter.backend adapter.kind size mode track.speed_mps \
              track.distance_km track.block_crossings frames frame_ms.n frame_ms.median frame_ms.p99 frame_ms.max \
-             frame_ms.median_update frame_ms.median_quiet start_ms latency_ms visibility_m terrain.window \
+             frame_ms.median_update frame_ms.median_quiet start_ms latency_ms latency visibility_m terrain.window \
              terrain.view_range_min_m terrain.limits_m terrain.near_blocks terrain.level1_blocks terrain.mixed_blocks \
              terrain.triangles_drawn terrain.triangles_all_level0 terrain.draw_calls terrain.update_cpu_ms.mean \
              terrain.update_cpu_ms.p99 terrain.update_cpu_ms.max terrain.build_cpu_ms.mean terrain.build_cpu_ms.max \

@@ -12,7 +12,7 @@ use crate::report::{AxisSeen, ButtonSeen, Device, Input};
 use crate::sticks;
 use sim::input::Curve;
 use sim::input::joystick::{Change, Connected, Joystick};
-use sim::input::profile::{AxisBinding, Profile, Target};
+use sim::input::profile::{self, AxisBinding, Profile, Target};
 use std::collections::BTreeMap;
 use std::io::{self, IsTerminal, Write};
 use std::sync::Arc;
@@ -29,11 +29,14 @@ const MOVED: f64 = 0.4;
 const LOOK: Duration = Duration::from_millis(8);
 
 /// What the pilot is asked for: the control, where to move it, and the sign that this has for us.
-const ASKED: [(Target, &str); 4] = [
+const ASKED: [(Target, &str); 7] = [
     (Target::Roll, "the stick fully to the right"),
     (Target::Pitch, "the stick fully back"),
     (Target::Yaw, "the right pedal (or twist the stick right) fully"),
     (Target::Throttle, "the throttle fully open"),
+    (Target::BrakeLeft, "the left toe brake fully down, if there is one"),
+    (Target::BrakeRight, "the right toe brake fully down, if there is one"),
+    (Target::Mixture, "the mixture lever fully rich, if there is one"),
 ];
 
 /// Runs the verb.
@@ -159,7 +162,7 @@ impl Heard {
 
     fn report(&self, sticks: &Joystick, profiles: &Arc<[Profile]>) -> Input {
         let device = |Connected { number, name, vendor_product: id }: Connected| {
-            let by = binding(profiles, id);
+            let by = profile::of_device(profiles, id);
             let of = |(key, _): &(&(usize, u32), &Moves)| key.0 == number;
             let axes = self.axes.iter().filter(of).map(|((_, code), axis)| AxisSeen {
                 code: format!("{code:#x}"),
@@ -191,11 +194,6 @@ impl Heard {
     }
 }
 
-fn binding(profiles: &[Profile], id: Option<(u16, u16)>) -> Option<&Profile> {
-    let own = profiles.iter().find(|profile| profile.device.is_some() && profile.device == id);
-    own.or_else(|| profiles.iter().find(|profile| profile.device.is_none()))
-}
-
 /// Writes what was found for each device; gives the file.
 fn written(
     args: &InputArgs,
@@ -213,13 +211,12 @@ fn written(
     for Connected { number, name, vendor_product: id } in sticks.connected() {
         let axes: Vec<_> = found.iter().filter(|(device, ..)| *device == number).collect();
         let Some(id) = id.filter(|_| !axes.is_empty()) else { continue };
-        let before = binding(profiles, Some(id)).cloned().unwrap_or_default();
+        let before = profile::of_device(profiles, Some(id)).cloned().unwrap_or_default();
         let mut profile = Profile { name, device: Some(id), ..before };
         for (_, target, code, way) in axes {
             profile.axes.retain(|bound| bound.target != *target && bound.code != *code);
             let curve = Curve { dead_zone: 0.03, softness: 0.3, inverted: *way < 0.0 };
-            let curve =
-                if *target == Target::Throttle { Curve { dead_zone: 0.0, softness: 0.0, ..curve } } else { curve };
+            let curve = if target.is_lever() { Curve { dead_zone: 0.0, softness: 0.0, ..curve } } else { curve };
             profile.axes.push(AxisBinding { code: *code, target: *target, curve });
         }
         sticks::keep(&file, profile)?;

@@ -337,12 +337,15 @@ fn what_is_draped_has_the_same_numbers_on_both_sides() {
         ("RUNWAY_GRAVEL", Kind::RunwayGravel),
         ("RUNWAY_GRASS", Kind::RunwayGrass),
         ("WHITE", Kind::White),
+        ("CRATER", Kind::Crater),
+        ("SCORCH", Kind::Scorch),
     ];
     let mut lines: Vec<String> =
         kinds.iter().map(|(name, kind)| format!("const {name}: u32 = {}u;", *kind as u32)).collect();
     lines.push(format!("const PLACE_BITS: u32 = {PLACE_BITS}u;"));
     lines.push(format!("const ACROSS_PER_METRE: f32 = {ACROSS_PER_METRE:.1};"));
     lines.push(format!("const EXTENT_PER_METRE: f32 = {EXTENT_PER_METRE:.1};"));
+    lines.push(format!("const REACH_RADII: f32 = {:.1};", terrain::block::overlay::decal::REACH_RADII));
     lines.push(format!("const UNITS: f32 = {:.1};", lattice::UNITS as f64));
     lines.push(format!("const ROAD_M: f32 = {:.1};", visual::passes::overlay::ROAD_M));
     for line in lines {

@@ -3,10 +3,11 @@
 //! Knows no library, so tests can feed it what no device would send. A device is known by vendor and product and bound
 //! by the first of the [`Profile`]s that is for it, else by the first that is for any.
 //!
-//! Invariant: a device that goes leaves its axes neutral and its throttle where it was; a bad value changes nothing.
+//! Invariant: a device that goes leaves its axes neutral, its brakes let go and its throttle and levers where they were; a bad
+//! value changes nothing.
 
 use super::profile::{self, Profile, Target};
-use super::{Command, Curve, ViewLook};
+use super::{Command, Curve, Levers, ViewLook};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -21,6 +22,43 @@ pub struct StickAxes {
     pub yaw: Option<f64>,
     /// 0..1.
     pub throttle: Option<f64>,
+    /// Levers.
+    pub levers: LeverAxes,
+}
+
+/// Levers that stand on axes, parts of their way as [`Levers`] has them; `None` where none was moved yet.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LeverAxes {
+    /// 0..1.
+    pub mixture: Option<f64>,
+    /// 0..1.
+    pub flaps: Option<f64>,
+    /// -1..1.
+    pub trim: Option<f64>,
+    /// Left and right, 0..1.
+    pub brakes: [Option<f64>; 2],
+}
+
+impl LeverAxes {
+    /// Levers after what moved since `before`; `None` if nothing did. Brakes of a device that went are let go.
+    pub fn moved(&self, before: &Self, levers: &Levers) -> Option<Levers> {
+        if self == before {
+            return None;
+        }
+        let after = |now: Option<f64>, then: Option<f64>, lever: f64| now.filter(|_| now != then).unwrap_or(lever);
+        let brake = |side: usize| match (self.brakes[side], before.brakes[side]) {
+            (None, Some(_)) => 0.0,
+            (now, then) => after(now, then, levers.brakes[side]),
+        };
+        let moved = Levers {
+            mixture: after(self.mixture, before.mixture, levers.mixture),
+            flaps: after(self.flaps, before.flaps, levers.flaps),
+            trim: after(self.trim, before.trim, levers.trim),
+            brakes: [brake(0), brake(1)],
+            ..*levers
+        };
+        Some(moved.checked())
+    }
 }
 
 /// State of all devices.
@@ -56,17 +94,17 @@ impl Bindings {
         self.devices.insert(device, vendor_product);
     }
 
-    /// A device went: its axes are neutral again, its throttle stays where it was. Gives `LookEnd` if its hat was held.
+    /// A device went: its axes are neutral again, its levers stay where they were. Gives `LookEnd` if its hat was held.
     pub fn disconnected(&mut self, device: usize) -> Option<Command> {
         self.devices.remove(&device);
-        self.values.retain(|(of, target), _| *of != device || *target == Target::Throttle);
+        self.values.retain(|(of, target), _| *of != device || target.stays());
         self.looking.take().map(|_| Command::LookEnd)
     }
 
     /// Every device went.
     pub fn disconnect_all(&mut self) {
         self.devices.clear();
-        self.values.retain(|(_, target), _| *target == Target::Throttle);
+        self.values.retain(|(_, target), _| target.stays());
         self.looking = None;
     }
 
@@ -120,19 +158,27 @@ impl Bindings {
             values.sort_by(f64::total_cmp);
             (!values.is_empty()).then(|| values.iter().sum::<f64>().clamp(-1.0, 1.0))
         };
-        let throttles = self.values.iter().filter(|((_, of), _)| *of == Target::Throttle).map(|(_, v)| 0.5 + 0.5 * v);
+        // Of several levers the one farthest on.
+        let lever = |target: Target| {
+            let values = self.values.iter().filter(|((_, of), _)| *of == target);
+            values.map(|(_, value)| 0.5 + 0.5 * value).reduce(f64::max)
+        };
         StickAxes {
             pitch: sum(Target::Pitch),
             roll: sum(Target::Roll),
             yaw: sum(Target::Yaw),
-            throttle: throttles.reduce(f64::max),
+            throttle: lever(Target::Throttle),
+            levers: LeverAxes {
+                mixture: lever(Target::Mixture),
+                flaps: lever(Target::Flaps),
+                trim: sum(Target::Trim),
+                brakes: [lever(Target::BrakeLeft), lever(Target::BrakeRight)],
+            },
         }
     }
 
     fn profile(&self, device: usize) -> Option<&Profile> {
-        let known = self.devices.get(&device).copied().flatten();
-        let own = self.profiles.iter().find(|profile| profile.device.is_some() && profile.device == known);
-        own.or_else(|| self.profiles.iter().find(|profile| profile.device.is_none()))
+        profile::of_device(&self.profiles, self.devices.get(&device).copied().flatten())
     }
 }
 
@@ -170,6 +216,33 @@ mod tests {
         let axes = bindings.axes();
         assert_eq!((axes.pitch, axes.throttle), (None, Some(0.75)));
         assert_eq!(bindings.device_count(), 0);
+    }
+
+    #[test]
+    fn levers_on_axes_move_only_what_moved_and_brakes_are_let_go_with_their_device() {
+        let pedals = "[[stick]]\ndevice = \"06a3:0763\"\naxes = [{ code = 1, moves = \"brake_left\" }, \
+                      { code = 2, moves = \"brake_right\" }, { code = 3, moves = \"mixture\" }, \
+                      { code = 4, moves = \"trim\" }, { code = 5, moves = \"flaps\" }]";
+        let mut bindings = Bindings::new(profile::with_embedded(pedals).unwrap());
+        bindings.connected(3, Some((0x06a3, 0x0763)));
+        let levers = Levers { gear: 0.0, trim: 0.3, ..Levers::default() };
+        let before = bindings.axes().levers;
+        assert_eq!(before.moved(&before, &levers), None);
+        bindings.axis(3, 1, 1.0);
+        bindings.axis(3, 3, 0.0);
+        bindings.axis(3, 5, f64::NAN);
+        let now = bindings.axes().levers;
+        let moved = now.moved(&before, &levers).unwrap();
+        assert_eq!(moved, Levers { brakes: [1.0, 0.0], mixture: 0.5, ..levers });
+        // A key leaned since: the axis that rests does not take it back.
+        bindings.axis(3, 4, -1.0);
+        let leaned = Levers { mixture: 0.7, ..moved };
+        let moved = bindings.axes().levers.moved(&now, &leaned).unwrap();
+        assert_eq!(moved, Levers { trim: -1.0, ..leaned });
+        let now = bindings.axes().levers;
+        bindings.disconnected(3);
+        let moved = bindings.axes().levers.moved(&now, &moved).unwrap();
+        assert_eq!((moved.brakes, moved.mixture), ([0.0; 2], 0.7));
     }
 
     #[test]

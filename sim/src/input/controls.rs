@@ -69,6 +69,8 @@ pub enum Command {
     BlockOverlay,
     /// Head-up display on or off.
     Hud,
+    /// The mouse becomes the stick, or no longer.
+    MouseStick,
     /// The next place to see from.
     NextCamera,
     /// Back to the pilot's eye.
@@ -93,6 +95,10 @@ pub enum Command {
     MixtureRich,
     /// Mixture leaner by a notch.
     MixtureLean,
+    /// Altimeter set to a hectopascal more.
+    AltimeterUp,
+    /// Altimeter set to a hectopascal less.
+    AltimeterDown,
     /// Lets the trigger do something, or no longer.
     MasterArm,
     /// The next weapon.
@@ -135,6 +141,7 @@ impl fmt::Display for Command {
             Self::Wireframe => "wireframe",
             Self::BlockOverlay => "block overlay",
             Self::Hud => "head-up display",
+            Self::MouseStick => "mouse as a stick",
             Self::NextCamera => "next camera",
             Self::CockpitCamera => "cockpit",
             Self::FlapsDown => "flaps down",
@@ -147,6 +154,8 @@ impl fmt::Display for Command {
             Self::TrimDown => "trim nose down",
             Self::MixtureRich => "mixture richer",
             Self::MixtureLean => "mixture leaner",
+            Self::AltimeterUp => "altimeter 1 hPa more",
+            Self::AltimeterDown => "altimeter 1 hPa less",
             Self::MasterArm => "master arm",
             Self::NextWeapon => "next weapon",
             Self::NextRipple => "more or fewer in a row",
@@ -181,6 +190,7 @@ const NAMES: &[(&str, Command)] = &[
     ("wireframe", Command::Wireframe),
     ("block_overlay", Command::BlockOverlay),
     ("hud", Command::Hud),
+    ("mouse_stick", Command::MouseStick),
     ("next_camera", Command::NextCamera),
     ("cockpit_camera", Command::CockpitCamera),
     ("flaps_down", Command::FlapsDown),
@@ -193,6 +203,8 @@ const NAMES: &[(&str, Command)] = &[
     ("trim_down", Command::TrimDown),
     ("mixture_rich", Command::MixtureRich),
     ("mixture_lean", Command::MixtureLean),
+    ("altimeter_up", Command::AltimeterUp),
+    ("altimeter_down", Command::AltimeterDown),
     ("master_arm", Command::MasterArm),
     ("next_weapon", Command::NextWeapon),
     ("next_ripple", Command::NextRipple),

@@ -32,6 +32,19 @@ impl Head {
         };
     }
 
+    /// Turns the head at once, as a mouse does; radians. It stays until another command.
+    pub fn turn(&mut self, right_rad: f64, up_rad: f64) {
+        const MOST_RAD: (f64, f64) = (2.9, 1.3);
+        if !(right_rad.is_finite() && up_rad.is_finite()) {
+            return;
+        }
+        self.aim = (
+            (self.right_rad + right_rad).clamp(-MOST_RAD.0, MOST_RAD.0),
+            (self.up_rad + up_rad).clamp(-MOST_RAD.1, MOST_RAD.1),
+        );
+        (self.right_rad, self.up_rad) = self.aim;
+    }
+
     /// Moves the head for `wall_s`; what is not a time counts as none.
     pub fn update(&mut self, wall_s: f64) {
         let dt_s = if wall_s.is_finite() { wall_s.max(0.0) } else { 0.0 };
@@ -70,5 +83,9 @@ mod tests {
         head.update(f64::NAN);
         head.update(1e9);
         assert!(head.is_ahead());
+        head.turn(0.5, -9.0);
+        head.turn(f64::NAN, 0.0);
+        head.update(10.0);
+        assert_eq!((head.right_rad, head.up_rad), (0.5, -1.3), "a mouse's turn holds");
     }
 }

@@ -11,6 +11,7 @@ use std::collections::HashMap;
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
+use std::time::{Duration, Instant, SystemTime};
 
 /// Faulty events after which sticks are no longer read.
 const MOST_FAULTS: u32 = 8;
@@ -75,6 +76,7 @@ pub struct Joystick {
     bindings: Bindings,
     is_gamepad: HashMap<usize, bool>,
     faults: u32,
+    first_event: Option<Instant>,
 }
 
 impl Joystick {
@@ -94,7 +96,8 @@ impl Joystick {
         // Dead zones are ours, by axis: gilrs' own would be applied on top.
         let gilrs = GilrsBuilder::new().with_default_filters(false).build();
         let gilrs = gilrs.map_err(|error| JoystickError(error.to_string()))?;
-        let mut joystick = Self { gilrs, bindings: Bindings::new(profiles), is_gamepad: HashMap::new(), faults: 0 };
+        let mut joystick =
+            Self { gilrs, bindings: Bindings::new(profiles), is_gamepad: HashMap::new(), faults: 0, first_event: None };
         let present: Vec<GamepadId> = joystick.gilrs.gamepads().map(|(id, _)| id).collect();
         for id in present {
             joystick.connect(id);
@@ -136,6 +139,9 @@ impl Joystick {
         for _ in 0..1_000 {
             let Some(event) = self.next_event() else { break };
             let device = usize::from(event.id);
+            if matches!(event.event, EventType::AxisChanged(..)) {
+                self.first_event.get_or_insert_with(|| told_at(event.time));
+            }
             let gamepad = self.is_gamepad.get(&device).copied().unwrap_or(false);
             let command = match event.event {
                 EventType::Connected => {
@@ -175,6 +181,11 @@ impl Joystick {
         commands
     }
 
+    /// When the first axis moved since the last call, by the system's own time of it.
+    pub fn take_first_event(&mut self) -> Option<Instant> {
+        self.first_event.take()
+    }
+
     /// The next event. gilrs 0.11 panics where a device sends an axis that it had not announced; the event is lost and
     /// the rest goes on, until a device does it too often.
     fn next_event(&mut self) -> Option<Event> {
@@ -197,6 +208,13 @@ impl Joystick {
         self.is_gamepad.insert(usize::from(id), thumb_sticks && !bound);
         self.bindings.connected(usize::from(id), vendor_product);
     }
+}
+
+/// A time of the wall clock as one of the clock that never jumps; one of another age is now.
+fn told_at(time: SystemTime) -> Instant {
+    let now = Instant::now();
+    let ago = time.elapsed().ok().filter(|ago| *ago < Duration::from_secs(10)).unwrap_or_default();
+    now.checked_sub(ago).unwrap_or(now)
 }
 
 /// gilrs turns Y axes round so that up is positive; undone, so that a raw code has its raw direction.

@@ -1,6 +1,8 @@
-//! What a pilot sets and leaves: mixture, flaps, gear, brakes, trim.
+//! What a pilot sets and leaves: mixture, flaps, gear, brakes, trim, the altimeter.
 //!
-//! Parts of a lever's way. A model takes those that it has a control for, by name ([`crate::scene`], `flown.rs`).
+//! Parts of a lever's way, and a pressure. A model takes those that it has a control for, by name ([`crate::scene`], `flown.rs`).
+
+use crate::air_data::{SETTINGS_PA, STANDARD_PA};
 
 /// Levers. Invariant: after [`Levers::checked`] every one is finite and within its range.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,11 +21,22 @@ pub struct Levers {
     pub trim: f64,
     /// Starter, 0..1.
     pub starter: f64,
+    /// What the altimeter is set to, Pa.
+    pub altimeter_pa: f64,
 }
 
 impl Default for Levers {
     fn default() -> Self {
-        Self { mixture: 1.0, flaps: 0.0, gear: 1.0, brakes: [0.0; 2], parking_brake: 0.0, trim: 0.0, starter: 0.0 }
+        Self {
+            mixture: 1.0,
+            flaps: 0.0,
+            gear: 1.0,
+            brakes: [0.0; 2],
+            parking_brake: 0.0,
+            trim: 0.0,
+            starter: 0.0,
+            altimeter_pa: STANDARD_PA,
+        }
     }
 }
 
@@ -41,6 +54,11 @@ impl Levers {
             parking_brake: held(self.parking_brake, 0.0, safe.parking_brake),
             trim: held(self.trim, -1.0, safe.trim),
             starter: held(self.starter, 0.0, safe.starter),
+            altimeter_pa: if self.altimeter_pa.is_finite() {
+                self.altimeter_pa.clamp(SETTINGS_PA.0, SETTINGS_PA.1)
+            } else {
+                safe.altimeter_pa
+            },
         }
     }
 }

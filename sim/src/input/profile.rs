@@ -29,10 +29,32 @@ pub enum Target {
     Yaw,
     /// Throttle lever: -1 closed, 1 open.
     Throttle,
+    /// Mixture lever: -1 cut off, 1 full rich.
+    Mixture,
+    /// Flaps lever: -1 up, 1 full out.
+    Flaps,
+    /// Trim wheel: 1 nose up.
+    Trim,
+    /// Left toe brake: -1 let go, 1 pressed.
+    BrakeLeft,
+    /// Right toe brake.
+    BrakeRight,
     /// The hat left and right.
     LookSide,
     /// The hat forward and back.
     LookUp,
+}
+
+impl Target {
+    /// Whether its whole way is of use: it has no middle that is neutral.
+    pub fn is_lever(self) -> bool {
+        matches!(self, Self::Throttle | Self::Mixture | Self::Flaps | Self::BrakeLeft | Self::BrakeRight)
+    }
+
+    /// Whether it stays where it was when its device goes.
+    pub fn stays(self) -> bool {
+        matches!(self, Self::Throttle | Self::Mixture | Self::Flaps | Self::Trim)
+    }
 }
 
 /// One axis of a device.
@@ -138,6 +160,12 @@ pub fn parse(text: &str) -> Result<Vec<Profile>, ProfileError> {
     }
     let file: File = toml::from_str(text).map_err(|error| ProfileError(error.to_string()))?;
     file.stick.into_iter().enumerate().map(|(number, stick)| profile(number + 1, stick)).collect()
+}
+
+/// The profile of a kind of device: the first of its own, else the first for any.
+pub fn of_device(profiles: &[Profile], vendor_product: Option<(u16, u16)>) -> Option<&Profile> {
+    let own = profiles.iter().find(|profile| profile.device.is_some() && profile.device == vendor_product);
+    own.or_else(|| profiles.iter().find(|profile| profile.device.is_none()))
 }
 
 /// A file that reads back to the same profiles.

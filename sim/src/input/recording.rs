@@ -2,12 +2,13 @@
 //!
 //! `t_s,<axis>..,command`: a row where an axis changed or a command was given; an empty cell holds. Times are those of
 //! the scene's steps and are rounded to them; rows stand in the order in which things happened. Lines with `#` are
-//! comments. Axes are those of [`AXES`], commands have the names of [`Command::names`].
+//! comments. Axes are those of [`AXES`], commands have the names of [`Command::names`]. Where axes of a stick moved levers,
+//! there are columns for [`LEVERS`], and a row that sets one sets them all: those left empty are as by default.
 //!
 //! Invariant others rely on: what is written of a scene's record and read back with the same rate of steps is the same,
 //! so a flight that is played again is the same flight.
 
-use super::{Command, Controls};
+use super::{Command, Controls, Levers};
 use crate::scene::{self, Stamped};
 use std::fmt::{self, Write};
 
@@ -25,6 +26,22 @@ pub const AXES: [Axis; 4] = [
     ("roll", |c| c.roll, |c, v| c.roll = v),
     ("yaw", |c| c.yaw, |c, v| c.yaw = v),
     ("throttle", |c| c.throttle, |c, v| c.throttle = v),
+];
+
+/// A lever by name.
+pub type Lever = (&'static str, fn(&Levers) -> f64, fn(&mut Levers, f64));
+
+/// Every lever.
+pub const LEVERS: [Lever; 9] = [
+    ("mixture", |l| l.mixture, |l, v| l.mixture = v),
+    ("flaps", |l| l.flaps, |l, v| l.flaps = v),
+    ("gear", |l| l.gear, |l, v| l.gear = v),
+    ("brake_left", |l| l.brakes[0], |l, v| l.brakes[0] = v),
+    ("brake_right", |l| l.brakes[1], |l, v| l.brakes[1] = v),
+    ("parking_brake", |l| l.parking_brake, |l, v| l.parking_brake = v),
+    ("trim", |l| l.trim, |l, v| l.trim = v),
+    ("starter", |l| l.starter, |l, v| l.starter = v),
+    ("altimeter_pa", |l| l.altimeter_pa, |l, v| l.altimeter_pa = v),
 ];
 
 /// Why a file is no recording: the line, what was expected and what was found.
@@ -48,7 +65,13 @@ pub fn written(record: &[Stamped], step_hz: u32) -> String {
     for (name, ..) in AXES {
         let _ = write!(text, ",{name}");
     }
+    let with_levers = record.iter().any(|stamped| matches!(stamped.command, scene::Command::Levers(_)));
+    let levers = if with_levers { &LEVERS[..] } else { &[] };
+    for (name, ..) in levers {
+        let _ = write!(text, ",{name}");
+    }
     text.push_str(",command\n");
+    let (no_axes, no_levers) = (",".repeat(AXES.len()), ",".repeat(levers.len()));
     let mut before: Option<Controls> = None;
     for Stamped { step, command } in record {
         let t_s = *step as f64 / f64::from(step_hz);
@@ -66,13 +89,20 @@ pub fn written(record: &[Stamped], step_hz: u32) -> String {
                         let _ = write!(text, ",{now}");
                     }
                 }
-                text.push_str(",\n");
+                let _ = writeln!(text, "{no_levers},");
                 before = Some(*controls);
+            }
+            scene::Command::Levers(now) => {
+                let _ = write!(text, "{t_s}{no_axes}");
+                for (_, get, _) in levers {
+                    let _ = write!(text, ",{}", get(now));
+                }
+                text.push_str(",\n");
             }
             // In a scene that stands still no step comes that could end a pause: played, it would stand for ever.
             scene::Command::Pilot(Command::Pause) => {}
             scene::Command::Pilot(command) => {
-                let _ = writeln!(text, "{t_s}{},{}", ",".repeat(AXES.len()), command.name());
+                let _ = writeln!(text, "{t_s}{no_axes}{no_levers},{}", command.name());
             }
             _ => {}
         }
@@ -93,7 +123,8 @@ pub fn parse(text: &str, step_hz: u32) -> Result<Vec<Stamped>, RecordingError> {
     let (at, header) = lines.next().ok_or_else(|| refuse(0, "expected a header, found nothing".to_owned()))?;
     let columns = header.split(',').map(|name| column(name.trim()).ok_or(name));
     let columns: Vec<Column> = columns.collect::<Result<_, _>>().map_err(|found| {
-        let known: Vec<&str> = AXES.iter().map(|(name, ..)| *name).collect();
+        let axes = AXES.iter().map(|(name, ..)| *name);
+        let known: Vec<&str> = axes.chain(LEVERS.iter().map(|(name, ..)| *name)).collect();
         refuse(at, format!("expected columns t_s, {}, command, found {}", known.join(", "), found.trim()))
     })?;
     if columns.first() != Some(&Column::Time) || columns.iter().filter(|column| **column == Column::Time).count() > 1 {
@@ -112,7 +143,7 @@ pub fn parse(text: &str, step_hz: u32) -> Result<Vec<Stamped>, RecordingError> {
             t_s.ok_or_else(|| refuse(at, format!("t_s: expected a time of {last_s} or later, found {}", cells[0])))?;
         last_s = t_s;
         let step = (t_s * f64::from(step_hz)).round() as u64;
-        let (mut moved, mut given) = (false, None);
+        let (mut moved, mut levers, mut given) = (false, None, None);
         for (column, cell) in columns.iter().zip(&cells).skip(1).filter(|(_, cell)| !cell.is_empty()) {
             match *column {
                 Column::Time => {}
@@ -122,6 +153,12 @@ pub fn parse(text: &str, step_hz: u32) -> Result<Vec<Stamped>, RecordingError> {
                         number(cell).ok_or_else(|| refuse(at, format!("{name}: expected a number, found {cell}")))?;
                     set(&mut controls, value);
                     moved = true;
+                }
+                Column::Lever(lever) => {
+                    let (name, _, set) = LEVERS[lever];
+                    let value =
+                        number(cell).ok_or_else(|| refuse(at, format!("{name}: expected a number, found {cell}")))?;
+                    set(levers.get_or_insert_with(Levers::default), value);
                 }
                 Column::Command => {
                     given = Some(Command::named(cell).ok_or_else(|| {
@@ -135,6 +172,7 @@ pub fn parse(text: &str, step_hz: u32) -> Result<Vec<Stamped>, RecordingError> {
             controls = controls.checked();
             stamped.push(Stamped { step, command: scene::Command::Controls(controls) });
         }
+        stamped.extend(levers.map(|l: Levers| Stamped { step, command: scene::Command::Levers(l.checked()) }));
         stamped.extend(given.map(|command| Stamped { step, command: scene::Command::Pilot(command) }));
     }
     Ok(stamped)
@@ -144,6 +182,7 @@ pub fn parse(text: &str, step_hz: u32) -> Result<Vec<Stamped>, RecordingError> {
 enum Column {
     Time,
     Axis(usize),
+    Lever(usize),
     Command,
 }
 
@@ -151,7 +190,10 @@ fn column(name: &str) -> Option<Column> {
     match name {
         "t_s" => Some(Column::Time),
         "command" => Some(Column::Command),
-        name => AXES.iter().position(|(axis, ..)| *axis == name).map(Column::Axis),
+        name => {
+            let axis = AXES.iter().position(|(axis, ..)| *axis == name).map(Column::Axis);
+            axis.or_else(|| LEVERS.iter().position(|(lever, ..)| *lever == name).map(Column::Lever))
+        }
     }
 }
 
@@ -194,6 +236,24 @@ mod tests {
         }
         assert_eq!(again.snapshot().hash(), first.snapshot().hash());
         assert_eq!(written(again.record(), 120), text);
+    }
+
+    #[test]
+    fn levers_on_axes_are_written_and_read_back() {
+        let mut first = scene();
+        let levers = Levers { brakes: [0.25, 1.0 / 3.0], trim: -0.125, mixture: 0.7, ..Levers::default() };
+        first.step(&SceneGround::void());
+        first.set_levers(levers);
+        first.command(Command::FlapsDown);
+        first.step(&SceneGround::void());
+        let text = written(first.record(), 120);
+        assert!(text.starts_with("t_s,pitch,roll,yaw,throttle,mixture,flaps,gear,brake_left,"), "{text}");
+        let stamped = parse(&text, 120).unwrap();
+        let found: Vec<_> = stamped.into_iter().map(|stamped| stamped.command).collect();
+        let given = [scene::Command::Levers(levers), scene::Command::Pilot(Command::FlapsDown)];
+        assert_eq!(found, given);
+        let refused = parse("t_s,brake_left\n0,inf\n", 120).unwrap_err().to_string();
+        assert!(refused.contains("brake_left: expected a number"), "{refused}");
     }
 
     #[test]

@@ -7,6 +7,8 @@ use crate::input::{self, Levers};
 const FLAPS_NOTCH: f64 = 0.25;
 const TRIM_NOTCH: f64 = 0.02;
 const MIXTURE_NOTCH: f64 = 0.05;
+/// A press of the altimeter's knob.
+const ALTIMETER_NOTCH_PA: f64 = 100.0;
 
 impl Scene {
     pub(super) fn lever(&mut self, command: input::Command) {
@@ -23,6 +25,8 @@ impl Scene {
             input::Command::TrimDown => Levers { trim: now.trim - TRIM_NOTCH, ..now },
             input::Command::MixtureRich => Levers { mixture: now.mixture + MIXTURE_NOTCH, ..now },
             input::Command::MixtureLean => Levers { mixture: (now.mixture - MIXTURE_NOTCH).max(0.0), ..now },
+            input::Command::AltimeterUp => Levers { altimeter_pa: now.altimeter_pa + ALTIMETER_NOTCH_PA, ..now },
+            input::Command::AltimeterDown => Levers { altimeter_pa: now.altimeter_pa - ALTIMETER_NOTCH_PA, ..now },
             _ => now,
         };
         self.levers = levers.checked();

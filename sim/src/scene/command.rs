@@ -179,7 +179,7 @@ pub struct Stamped {
 }
 coded!(Stamped { step, command });
 
-coded!(Levers { mixture, flaps, gear, brakes, parking_brake, trim, starter });
+coded!(Levers { mixture, flaps, gear, brakes, parking_brake, trim, starter, altimeter_pa });
 coded!(Controls { pitch, roll, yaw, throttle });
 coded_choice!(Condition { Flying, OnGround, Crashed });
 coded!(UtcTime { unix_ns });
@@ -196,7 +196,7 @@ coded!(AircraftState {
 });
 
 /// The pilot's commands that change a scene, by their number in a save; the others concern the picture alone.
-const PILOT: [input::Command; 26] = [
+const PILOT: [input::Command; 28] = [
     input::Command::Pause,
     input::Command::Freeze,
     input::Command::Reset,
@@ -223,6 +223,8 @@ const PILOT: [input::Command; 26] = [
     input::Command::NextRipple,
     input::Command::Trigger,
     input::Command::TriggerEnd,
+    input::Command::AltimeterUp,
+    input::Command::AltimeterDown,
 ];
 
 impl Command {

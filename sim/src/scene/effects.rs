@@ -185,7 +185,10 @@ impl Scene {
         self.log.add(one.time_s, burst);
         let under_m = ground.height_m(point_m.x, point_m.z);
         let height_m = if on_ground { Some(0.0) } else { under_m.map(|under_m| point_m.y - under_m) };
-        if let Some(crater) = height_m.and_then(|height_m| crater(warhead.tnt_kg, buried, height_m)) {
+        // Water closes over it again.
+        if let Some(crater) = height_m.and_then(|height_m| crater(warhead.tnt_kg, buried, height_m))
+            && !ground.is_water(point_m.x, point_m.z)
+        {
             let happening = Happening::Crater {
                 centre_m: if on_ground { point_m } else { DVec3 { y: under_m.unwrap_or(point_m.y), ..point_m } },
                 radius_m: crater.radius_m,

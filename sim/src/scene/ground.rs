@@ -103,6 +103,11 @@ impl SceneGround {
         Some(Footing { point_m: DVec3::new(north_m, east_m, -height_m), normal: ned_from_world(normal), surface })
     }
 
+    /// Whether water covers a plan point, as far as the cover says.
+    pub fn is_water(&self, x_m: f64, z_m: f64) -> bool {
+        self.cover.as_ref().is_some_and(|cover| Surface::of(cover.class_at(x_m, z_m)).is_water)
+    }
+
     /// No ground anywhere.
     pub fn void() -> Self {
         Self::heights(|_, _| None)
@@ -122,7 +127,7 @@ impl SceneGround {
         let Some(area) = &self.area else { return Ok(self.clone()) };
         let (area, changed) = area.edited(edits)?;
         let objects = self.objects.as_ref().map(|objects| Arc::new(objects.edited(&area, &changed).0));
-        Ok(Self { objects, ..Self::from(area) })
+        Ok(Self { objects, cover: self.cover.clone(), ..Self::from(area) })
     }
 
     /// Heights as a function.

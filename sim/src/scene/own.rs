@@ -115,7 +115,9 @@ impl Scene {
             | input::Command::TrimUp
             | input::Command::TrimDown
             | input::Command::MixtureRich
-            | input::Command::MixtureLean => self.lever(command),
+            | input::Command::MixtureLean
+            | input::Command::AltimeterUp
+            | input::Command::AltimeterDown => self.lever(command),
             input::Command::MasterArm
             | input::Command::NextWeapon
             | input::Command::NextRipple

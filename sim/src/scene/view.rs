@@ -8,7 +8,8 @@ use super::event::Event;
 use super::shell::Shell;
 use super::target::TargetState;
 use super::{Freeze, Roster, Scene};
-use crate::aircraft::Condition;
+use crate::air_data::AirData;
+use crate::aircraft::{AircraftState, Condition};
 use crate::snapshot::{Flags, Mode, Snapshot, StableId, turned};
 use crate::weapons::Damage;
 use glam::{DQuat, DVec3};
@@ -152,7 +153,14 @@ impl Scene {
             events_counted: self.log.counted,
             events_chain: self.log.chain,
             instruments: self.instruments(),
+            air_data: self.air_data(&aircraft),
         }
+    }
+
+    fn air_data(&self, aircraft: &AircraftState) -> AirData {
+        let altitude_m = aircraft.position_m.y;
+        let air = self.surroundings.atmosphere.at(altitude_m);
+        AirData::of(&air, aircraft.airspeed_mps, self.levers.altimeter_pa, altitude_m)
     }
 
     fn recent_events(&self) -> Arc<[Event]> {

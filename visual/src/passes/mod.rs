@@ -2,6 +2,7 @@
 
 mod bindings;
 pub mod canopy;
+pub mod decals;
 pub mod detail;
 pub mod heights;
 pub mod lights;

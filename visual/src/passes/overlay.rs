@@ -75,7 +75,10 @@ impl OverlayPass {
             return None;
         }
         let grid = *landscape.ground.field().grid();
-        let make = |fragment| pipeline(gpu, frame, terrain, format, fragment, settings.detail);
+        let make = |entry| {
+            let (frame, terrain) = (frame.clone(), terrain.clone());
+            pipeline(gpu, &Fragment { frame, terrain, format, entry, detail: settings.detail })
+        };
         let pipelines = ["overlay_fragment", "open_water_fragment"].map(make);
         let settings = Settings {
             side_m: grid.block_m(),
@@ -216,26 +219,31 @@ const STAGES: [usize; 4] = [0, 1, 0, 0];
 const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
     wgpu::vertex_attr_array![0 => Uint32x2, 1 => Float32, 2 => Float32, 3 => Uint32];
 
-fn pipeline(
-    gpu: &Gpu,
-    frame: &wgpu::BindGroupLayout,
-    terrain: &wgpu::BindGroupLayout,
-    format: TargetFormat,
-    fragment: &str,
-    detail: u32,
-) -> wgpu::RenderPipeline {
+/// What a pipeline of the shader is made for.
+pub(super) struct Fragment {
+    /// Layouts of groups 0 and 1.
+    pub frame: wgpu::BindGroupLayout,
+    pub terrain: wgpu::BindGroupLayout,
+    pub format: TargetFormat,
+    /// The fragment stage's entry.
+    pub entry: &'static str,
+    /// How many of the detail texture's scales the ground has.
+    pub detail: u32,
+}
+
+pub(super) fn pipeline(gpu: &Gpu, of: &Fragment) -> wgpu::RenderPipeline {
     let device = &gpu.device;
     let module = shaders::module(device, "overlay.wgsl");
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("overlay"),
-        bind_group_layouts: &[Some(frame), Some(terrain)],
+        bind_group_layouts: &[Some(&of.frame), Some(&of.terrain)],
         immediate_size: 0,
     });
-    let constants = [("TILE", f64::from(terrain::block::mesh::TILE)), ("DETAIL", f64::from(detail.min(2)))];
+    let constants = [("TILE", f64::from(terrain::block::mesh::TILE)), ("DETAIL", f64::from(of.detail.min(2)))];
     let options =
         wgpu::PipelineCompilationOptions { constants: &constants, ..wgpu::PipelineCompilationOptions::default() };
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(fragment),
+        label: Some(of.entry),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
             module: &module,
@@ -249,14 +257,14 @@ fn pipeline(
         },
         // A sliver may be turned over by the rounding of a spot: nothing is culled.
         primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: format.depth_state(wgpu::CompareFunction::GreaterEqual, false),
-        multisample: format.multisample(),
+        depth_stencil: of.format.depth_state(wgpu::CompareFunction::GreaterEqual, false),
+        multisample: of.format.multisample(),
         fragment: Some(wgpu::FragmentState {
             module: &module,
-            entry_point: Some(fragment),
+            entry_point: Some(of.entry),
             compilation_options: options,
             targets: &[Some(wgpu::ColorTargetState {
-                format: format.colour,
+                format: of.format.colour,
                 blend: Some(wgpu::BlendState::ALPHA_BLENDING),
                 write_mask: wgpu::ColorWrites::ALL,
             })],

@@ -26,15 +26,15 @@ pub struct Overlays {
 
 /// Along and across of a plan point, and what else a vertex says.
 #[derive(Clone, Copy)]
-struct Frame {
-    kind: Kind,
-    origin: Spot,
-    along: DVec2,
+pub(super) struct Frame {
+    pub kind: Kind,
+    pub origin: Spot,
+    pub along: DVec2,
     /// To the right of along, and longer than 1 where the ground is steep.
-    across: DVec2,
-    start_m: f64,
-    half_m: f64,
-    half_length_m: f64,
+    pub across: DVec2,
+    pub start_m: f64,
+    pub half_m: f64,
+    pub half_length_m: f64,
 }
 
 impl Overlays {
@@ -72,11 +72,12 @@ impl Overlays {
     }
 }
 
-struct Drape<'a> {
-    field: &'a Field,
-    lattice: Lattice,
-    square: CellSquare,
-    overlay: &'a mut Overlay,
+/// What is being draped over a block.
+pub(super) struct Drape<'a> {
+    pub field: &'a Field,
+    pub lattice: Lattice,
+    pub square: CellSquare,
+    pub overlay: &'a mut Overlay,
 }
 
 impl Drape<'_> {
@@ -156,7 +157,8 @@ impl Drape<'_> {
         }
     }
 
-    fn polygon(&mut self, polygon: Polygon, frame: &Frame) {
+    /// Cuts a polygon to the block's triangles.
+    pub fn polygon(&mut self, polygon: Polygon, frame: &Frame) {
         let Self { field, lattice, square, overlay } = self;
         polygon.cut(*square, |column, row, piece| {
             let first = overlay.vertices.len();

@@ -9,6 +9,7 @@
 
 pub mod build;
 pub mod clip;
+pub mod decal;
 mod glyphs;
 pub mod lattice;
 mod markings;
@@ -62,6 +63,10 @@ pub enum Kind {
     RunwayGrass = 15,
     /// White paint; along and across count from the middle of the mark.
     White = 16,
+    /// A crater too small for the posts, with what it threw out; half the width is its radius ([`decal`]).
+    Crater = 17,
+    /// Burnt ground; the same.
+    Scorch = 18,
 }
 
 impl Kind {
