@@ -16,6 +16,7 @@ mod hud;
 mod models;
 mod open_world;
 mod output;
+mod plot;
 mod points;
 mod progress;
 mod report;

@@ -110,7 +110,8 @@ impl Seat {
     pub fn view(&mut self, scenery: &mut Scenery, snapshot: &Snapshot, size_px: [u32; 2]) -> Seen {
         let eye = self.cameras.eye(snapshot, &self.head, &scenery.area);
         scenery.things.set_moving(&self.cast.shapes(snapshot, eye.inside));
-        let view = scenery.view(eye.at_m, eye.attitude, size_px);
+        let fov_y_rad = eye.glass_rad.map_or(scenery.look.fov_y_rad, |glass| glass.min(scenery.look.fov_y_rad));
+        let view = View::fov_y(eye.at_m, eye.attitude, fov_y_rad, size_px);
         Seen { view, ahead: eye.inside && self.head.is_ahead(), camera: self.cameras.now() }
     }
 }

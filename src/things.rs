@@ -207,6 +207,12 @@ impl Things {
         self.decals.add(decals);
     }
 
+    /// Marks that there are.
+    #[cfg(test)]
+    pub fn decals(&self) -> usize {
+        self.decals.count()
+    }
+
     /// Takes all marks away.
     pub fn clear_decals(&mut self) {
         self.decals.clear();

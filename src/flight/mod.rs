@@ -11,6 +11,7 @@ pub mod paced;
 pub mod pictures;
 pub mod plan;
 pub mod record;
+mod trace;
 pub mod window;
 
 use crate::failure::Failure;

@@ -1,4 +1,5 @@
-//! Pictures along the track or of a situation's moments, and a contact sheet of all.
+//! Pictures along the track or of a situation's moments, a contact sheet of all, strips of those that belong together; of a
+//! situation also plots of what was flown.
 //!
 //! Taken after the flight by a scenery of their own that waits for every block, so that they do not depend on how far was
 //! flown or on the machine's speed; nothing in them is measured time.
@@ -7,6 +8,7 @@ use super::device_failed;
 use super::inputs;
 use super::plan::Plan;
 use super::record::RunningHash;
+use super::trace::Trace;
 use crate::args::FlyArgs;
 use crate::failure::Failure;
 use crate::progress::Progress;
@@ -17,11 +19,14 @@ use crate::stage::marks::Marks;
 use crate::stage::{self, Captions, Seat, Sun};
 use sim::situation::Moment;
 use sim::{Snapshot, UtcTime};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use visual::capture::{self, Offscreen, Picture};
 
 /// Pictures in a row of the contact sheet.
 const COLUMNS: u32 = 4;
+/// Pixels to a unit of a plot.
+const PLOT_SCALE: f64 = 2.0;
 /// Most pixels that the contact sheet is wide.
 const SHEET_PX: u32 = 2560;
 /// Updates after which a window that waits for every block has uploaded them all, however small its budget.
@@ -57,12 +62,14 @@ pub fn take(flown: Scenery, plan: &Plan, args: &FlyArgs, date: UtcTime) -> Resul
         seat: Seat::new(&world, &scene, args.camera),
         effects: Effects::default(),
         marks: Marks::default(),
+        trace: Trace::default(),
         sun: Sun::new(&world, date)?,
         target: Offscreen::new(&scenery.gpu, look.size_px).map_err(device_failed)?,
         scenery,
         folder: &args.shots,
         taken: Taken::default(),
         small: Vec::new(),
+        names: Vec::new(),
     };
     match plan {
         Plan::Track { pictures, .. } => {
@@ -87,6 +94,7 @@ pub fn take(flown: Scenery, plan: &Plan, args: &FlyArgs, date: UtcTime) -> Resul
                 while scene.clock.step() < at {
                     let snapshot = sim::lockstep(&mut scene, &ground, 1);
                     album.effects.of(&snapshot);
+                    album.trace.add(&snapshot);
                     if let Some(other) = album.marks.leave(&snapshot, &mut album.scenery) {
                         ground = other;
                     }
@@ -104,6 +112,7 @@ pub fn take(flown: Scenery, plan: &Plan, args: &FlyArgs, date: UtcTime) -> Resul
                 }
                 album.add(&snapshot, &moment.name)?;
             }
+            album.plots(situation.name())?;
         }
     }
     album.bound()
@@ -116,11 +125,13 @@ struct Album<'a> {
     seat: Seat,
     effects: Effects,
     marks: Marks,
+    trace: Trace,
     sun: Sun,
     target: Offscreen,
     folder: &'a Path,
     taken: Taken,
     small: Vec<Picture>,
+    names: Vec<String>,
 }
 
 impl Album<'_> {
@@ -146,12 +157,28 @@ impl Album<'_> {
         self.taken.files.push(write(&picture, self.folder, &file_name(self.taken.files.len() + 1, name))?);
         let shrink = (COLUMNS * size_px[0]).div_ceil(SHEET_PX).max(1);
         self.small.push(Picture::contact_sheet(&[picture], 1, shrink));
+        self.names.push(name.to_owned());
+        Ok(())
+    }
+
+    /// Plots of what was flown up to the last picture.
+    fn plots(&mut self, name: &str) -> Result<(), Failure> {
+        let plots = [("flight.png", self.trace.flight(name)), ("landing.png", self.trace.landing(name))];
+        for (file, plot) in plots {
+            if let Some(plot) = plot {
+                self.taken.files.push(write(&plot.picture(PLOT_SCALE), self.folder, file)?);
+            }
+        }
         Ok(())
     }
 
     fn bound(mut self) -> Result<Taken, Failure> {
         let sheet = Picture::contact_sheet(&self.small, COLUMNS.min(self.small.len() as u32), 1);
         self.taken.files.push(write(&sheet, self.folder, "contact-sheet.png")?);
+        for (name, places) in strips(&self.names) {
+            let strip = Picture::contact_sheet(&self.small[places], COLUMNS, 1);
+            self.taken.files.push(write(&strip, self.folder, &format!("strip-{}.png", dashed(&name)))?);
+        }
         Ok(self.taken)
     }
 }
@@ -162,11 +189,31 @@ fn write(picture: &Picture, folder: &Path, name: &str) -> Result<PathBuf, Failur
     Ok(path)
 }
 
-/// `3-central-tian-shan.png`: letters and digits, the rest as dashes.
+/// `3-central-tian-shan.png`.
 fn file_name(number: usize, name: &str) -> String {
+    format!("{number}-{}.png", dashed(name))
+}
+
+/// Letters and digits, the rest as dashes.
+fn dashed(name: &str) -> String {
     let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     let words: Vec<String> = words.map(str::to_ascii_lowercase).collect();
-    format!("{number}-{}.png", words.join("-"))
+    words.join("-")
+}
+
+/// Pictures in a row whose names differ by a number at the end alone, three or more: the name and their places.
+fn strips(names: &[String]) -> Vec<(String, Range<usize>)> {
+    let stem = |name: &str| name.trim_end_matches(|c: char| c.is_ascii_digit() || c == ' ').to_owned();
+    let mut found: Vec<(String, Range<usize>)> = Vec::new();
+    for (at, name) in names.iter().enumerate() {
+        let stem = stem(name);
+        match found.last_mut() {
+            Some((known, places)) if *known == stem => places.end = at + 1,
+            _ => found.push((stem, at..at + 1)),
+        }
+    }
+    found.retain(|(_, places)| places.len() >= 3);
+    found
 }
 
 #[cfg(test)]
@@ -177,5 +224,7 @@ mod tests {
     fn names_are_plain_and_in_order() {
         assert_eq!(file_name(3, "central Tian Shan"), "3-central-tian-shan.png");
         assert_eq!(file_name(1, "../12.5 km"), "1-12-5-km.png");
+        let names = ["start", "dive 1", "dive 2", "dive 3", "away 1", "away 2"].map(str::to_owned);
+        assert_eq!(strips(&names), [("dive".to_owned(), 1..4)]);
     }
 }

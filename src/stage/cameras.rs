@@ -35,15 +35,21 @@ pub const CAMERAS: [Camera; 6] =
 /// Distance behind and height over the aircraft of the chase camera, and distance of the one about it, metres.
 const CHASE_M: [f64; 2] = [24.0, 5.0];
 const ORBIT_M: f64 = 22.0;
-/// Height of an eye on a tower's roof over its foot, and of a person beside the way, metres.
-const TOWER_M: f64 = 23.4;
+/// An eye at the edge of a tower's roof: its height over the foot and its distance from the middle; the height of a person
+/// beside the way, metres.
+const TOWER_M: [f64; 2] = [24.2, 5.6];
 const PERSON_M: f64 = 1.8;
 /// A tower farther than this sees nothing of the flight, metres.
 const TOWER_REACH_M: f64 = 12_000.0;
 /// How far apart places beside the way lie, and how far aside, metres.
 const BESIDE_M: [f64; 2] = [1_200.0, 120.0];
-/// Distance behind a weapon, metres, and how long its strike is watched, scene seconds.
+/// A watcher takes up a glass until the aircraft's surroundings, so wide, fill half of the picture's height, metres; the
+/// narrowest view of a glass, radians.
+const GLASS_M: f64 = 60.0;
+const GLASS_RAD: f64 = 0.07;
+/// Distance behind a weapon, metres; behind and over where it struck; how long its strike is watched, scene seconds.
 const WEAPON_M: f64 = 12.0;
+const STRIKE_M: [f64; 2] = [70.0, 18.0];
 const WATCHED_S: f64 = 4.0;
 /// Least height of an eye over the ground, metres.
 const CLEAR_M: f64 = 1.2;
@@ -57,6 +63,8 @@ pub struct Eye {
     pub attitude: DQuat,
     /// Whether it is the pilot's: the aircraft itself is not drawn, and the display lies on the world.
     pub inside: bool,
+    /// Vertical field of view through a glass, radians, where it is narrower than the eye's own.
+    pub glass_rad: Option<f64>,
 }
 
 /// See the module.
@@ -117,7 +125,7 @@ impl Cameras {
         let way = way(snapshot);
         self.follow_weapon(snapshot);
         let eye = match self.now {
-            Camera::Cockpit => Eye { at_m, attitude: super::attitude(snapshot, head), inside: true },
+            Camera::Cockpit => Eye { at_m, attitude: super::attitude(snapshot, head), inside: true, glass_rad: None },
             Camera::Chase => {
                 let (sin, cos) = head.right_rad.sin_cos();
                 let level = DVec3::new(way.x * cos - way.z * sin, way.y, way.x * sin + way.z * cos);
@@ -130,8 +138,12 @@ impl Cameras {
                     terrain::frame::direction(nose + head.right_rad + 0.7, (head.up_rad - 0.22).clamp(-1.4, 1.4));
                 looking(at_m - from * ORBIT_M, at_m, area)
             }
-            Camera::Tower => looking(self.tower_m(at_m, way, area), at_m, area),
+            Camera::Tower => through_glass(looking(self.tower_m(at_m, way, area), at_m, area), at_m),
             Camera::Weapon => match self.weapon {
+                Some((struck_m, along, since_s)) if since_s < snapshot.time_s => {
+                    let level = DVec3::new(along.x, 0.0, along.z).try_normalize().unwrap_or(DVec3::NEG_Z);
+                    looking(struck_m - level * STRIKE_M[0] + DVec3::Y * STRIKE_M[1], struck_m, area)
+                }
                 Some((weapon_m, along, _)) => {
                     looking(weapon_m - along * WEAPON_M + DVec3::Y * 2.0, weapon_m + along * 40.0, area)
                 }
@@ -148,8 +160,10 @@ impl Cameras {
         let near = |tower: &&DVec2| tower.distance_squared(DVec2::new(at_m.x, at_m.z));
         let tower = self.towers.iter().min_by(|a, b| near(a).total_cmp(&near(b)));
         if let Some(tower) = tower.filter(|tower| near(tower) < TOWER_REACH_M * TOWER_REACH_M) {
-            // Beside the aerial.
-            return DVec3::new(tower.x + 1.5, area.height_m(tower.x, tower.y).unwrap_or(at_m.y) + TOWER_M, tower.y);
+            // At the edge that the aircraft is on.
+            let aside = (DVec2::new(at_m.x, at_m.z) - tower).try_normalize().unwrap_or(DVec2::X) * TOWER_M[1];
+            let foot_m = area.height_m(tower.x, tower.y).unwrap_or(at_m.y);
+            return DVec3::new(tower.x + aside.x, foot_m + TOWER_M[0], tower.y + aside.y);
         }
         // Places are fixed in the world: the eye jumps on when the aircraft is past one.
         let along = if way.x.abs() > way.z.abs() { DVec3::X } else { DVec3::Z };
@@ -181,6 +195,12 @@ fn way(snapshot: &Snapshot) -> DVec3 {
     if aircraft.velocity_mps.length() > 8.0 { aircraft.velocity_mps.normalize() } else { aircraft.attitude * DVec3::X }
 }
 
+/// The same eye with a glass, if what it looks at is far.
+fn through_glass(eye: Eye, to_m: DVec3) -> Eye {
+    let distance_m = eye.at_m.distance(to_m).max(1.0);
+    Eye { glass_rad: Some((2.0 * (GLASS_M / distance_m).atan()).max(GLASS_RAD)), ..eye }
+}
+
 /// An eye that looks at a place, kept above the ground.
 fn looking(from_m: DVec3, to_m: DVec3, area: &Area) -> Eye {
     let floor_m = area.height_m(from_m.x, from_m.z).map_or(f64::NEG_INFINITY, |ground_m| ground_m + CLEAR_M);
@@ -189,7 +209,7 @@ fn looking(from_m: DVec3, to_m: DVec3, area: &Area) -> Eye {
     // Straight up and down any side will do.
     let right = ahead.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
     let attitude = DQuat::from_mat3(&DMat3::from_cols(right, right.cross(ahead), -ahead)).normalize();
-    Eye { at_m, attitude, inside: false }
+    Eye { at_m, attitude, inside: false, glass_rad: None }
 }
 
 #[cfg(test)]

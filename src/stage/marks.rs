@@ -43,7 +43,13 @@ impl Marks {
         let new = || snapshot.events.iter().filter(|event| event.number >= self.taken);
         let ground = scenery.scene_ground();
         let is_land = |of: &Decal| !ground.is_water(of.centre_m.x, of.centre_m.y);
-        let decals: Vec<Decal> = new().filter_map(|event| decal(event, snapshot)).filter(is_land).collect();
+        let mut decals: Vec<Decal> = new().filter_map(|event| decal(event, snapshot)).filter(is_land).collect();
+        // What threw up a crater leaves no mark of its strike beside it.
+        let craters: Vec<Decal> = decals.iter().filter(|of| of.radius_m > ROUND_M).copied().collect();
+        decals.retain(|of| {
+            of.radius_m > ROUND_M
+                || craters.iter().all(|crater| crater.centre_m.distance(of.centre_m) > crater.radius_m)
+        });
         let edits: Vec<Edit> = new().filter_map(crater).map(Edit::Crater).collect();
         self.taken = snapshot.events_counted;
         if !decals.is_empty() {
@@ -102,4 +108,81 @@ fn is_ground(strike: &scene::Strike) -> bool {
 
 fn burning(snapshot: &Snapshot, id: StableId) -> Option<DVec3> {
     snapshot.targets.iter().find(|target| target.id == id && target.burning).map(|target| target.position_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenery::Look;
+    use crate::values::Quality;
+    use sim::scene::{Catalogue, Command, Surroundings};
+    use sim::weapons::{Aim, Weapon, builtin};
+    use sim::{Scene, UtcTime};
+    use std::path::Path;
+    use std::sync::Arc;
+    use visual::capture;
+
+    /// A charge of this mass leaves a crater of some 400 m in plan: two steps of the tiny world.
+    const HUGE_KG: f64 = 1e9;
+
+    fn catalogue() -> Arc<Catalogue> {
+        let mut all = Catalogue::new();
+        builtin::add_all(&mut all).unwrap();
+        let text = include_str!("../../assets/weapons/mk82.toml");
+        let huge = text.replace("tnt_kg = 95.0", &format!("tnt_kg = {HUGE_KG:e}"));
+        assert_ne!(text, huge);
+        all.add_weapon("huge", Weapon::from_text(Path::new("huge.toml"), &huge).unwrap()).unwrap();
+        Arc::new(all)
+    }
+
+    /// Drops a bomb and lets its marks be left; steps until the ground is another, or all are down.
+    fn drop(weapon: &str, rounds: u32, scenery: &mut Scenery) -> (Scene, SceneGround, u32) {
+        let start = sim::aircraft::AircraftState::level(DVec3::new(0.0, 3_000.0, 1_000.0), 0.0, 150.0);
+        let date = UtcTime::parse("2026-06-21T06:00:00Z").unwrap();
+        let mut scene = Scene::furnished(start, date, 120, Surroundings::default(), catalogue()).unwrap();
+        let (own, weapon) = (scene.own_id(), weapon.to_owned());
+        let aim = Aim::Nearest;
+        for command in [
+            Command::Load { owner: own, weapon: weapon.clone(), rounds, at_m: DVec3::Z },
+            Command::Arm { owner: own, master: true, weapon: Some(weapon.clone()), fuze: None },
+            Command::Release { owner: own, weapon, rounds, together: 1, interval_s: 0.5, aim },
+        ] {
+            scene.order(command).unwrap();
+        }
+        let (mut ground, mut marks, mut edits) = (scenery.scene_ground(), Marks::default(), 0);
+        for _ in 0..120 * 60 {
+            scene.step(&ground);
+            if let Some(other) = marks.leave(&scene.snapshot(), scenery) {
+                (ground, edits) = (other, edits + 1);
+            }
+        }
+        (scene, ground, edits)
+    }
+
+    #[test]
+    fn bombs_leave_marks_and_a_huge_one_another_ground_that_the_next_step_meets() {
+        let Ok(gpu) = visual::Gpu::headless() else {
+            println!("skipped: no adapter");
+            return;
+        };
+        let world = Arc::new(crate::bench::tests::tiny_world());
+        let look = Look { size_px: [64, 64], ..Look::preset(Quality::Standard) };
+        let mut scenery = Scenery::new(gpu, capture::FORMAT, world, look);
+        let before = scenery.scene_ground();
+        let (scene, _, edits) = drop("mk82", 3, &mut scenery);
+        assert_eq!((edits, scenery.things.decals()), (0, 3), "three small craters");
+        assert_eq!(scene.snapshot().ground_version, 0);
+
+        let (scene, after, edits) = drop("huge", 1, &mut scenery);
+        assert_eq!(edits, 1);
+        assert_eq!((after.version(), scene.snapshot().ground_version), (1, 1));
+        let changes_m = (-3_000..3_000).step_by(50).map(f64::from).map(|z_m| {
+            let height = |ground: &SceneGround| ground.height_m(0.0, z_m).unwrap_or(0.0);
+            height(&after) - height(&before)
+        });
+        let deepest_m = changes_m.fold(0.0, f64::min);
+        assert!(deepest_m < -50.0, "a crater: {deepest_m}");
+        // Another scene's marks go; a mark that is huge is no mark.
+        assert_eq!(scenery.things.decals(), 0);
+    }
 }

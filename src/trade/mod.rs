@@ -4,8 +4,6 @@
 //! take turns at the same cameras, so their costs compare even on a busy machine. Errors are exact properties of what
 //! is drawn, not of the machine.
 
-mod axis;
-mod drawing;
 pub mod flight;
 mod knobs;
 mod landscape;

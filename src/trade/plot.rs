@@ -4,8 +4,8 @@
 //! Error is upward, except in a row of models, where it is to the right. What has no place on an axis (no number, or 0
 //! on a logarithmic one) has no point; a row of models says so in words.
 
-use super::axis::{Axis, shown};
-use super::drawing::{Drawing, FAINT, GREY, INK};
+use crate::plot::axis::{Axis, shown};
+use crate::plot::drawing::{Drawing, FAINT, GREY, INK};
 use crate::report::{Knob, KnobPoint};
 use visual::passes::lines::Align;
 

@@ -27,6 +27,36 @@ impl Axis {
         Self { low: 0.0, high, logarithmic: false, marks }
     }
 
+    /// Linear, from somewhat below the least value to somewhat beyond the greatest.
+    pub fn around(values: &[f64]) -> Self {
+        let sound = values.iter().copied().filter(|v| v.is_finite());
+        let (least, most) =
+            sound.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), v| (least.min(v), most.max(v)));
+        let (least, most) = if least <= most { (least, most) } else { (0.0, 1.0) };
+        // A constant is drawn in the middle of a span that it does not vanish in.
+        let (span, middle) = ((most - least).max(1e-9 * most.abs()).max(1e-9), 0.5 * (least + most));
+        let step = round_step(1.04 * span / 6.0);
+        let low = ((middle - 0.52 * span) / step).floor() * step;
+        let high = ((middle + 0.52 * span) / step).ceil() * step;
+        let count = ((high - low) / step).round().clamp(1.0, 20.0) as usize;
+        let mark = |i: usize| low + i as f64 * step;
+        // A zero that the sum of steps misses by a rounding is one.
+        let marks = (0..=count).map(mark).map(|m| if m.abs() < 1e-6 * step { 0.0 } else { m }).collect();
+        Self { low, high, logarithmic: false, marks }
+    }
+
+    /// Linear, from the least value to the greatest, with round marks between.
+    pub fn along(values: &[f64]) -> Self {
+        let wide = Self::around(values);
+        let sound = || values.iter().copied().filter(|v| v.is_finite());
+        let (low, high) = (sound().fold(f64::INFINITY, f64::min), sound().fold(f64::NEG_INFINITY, f64::max));
+        if low >= high || !(high - low).is_finite() {
+            return wide;
+        }
+        let marks = wide.marks.into_iter().filter(|mark| (low..=high).contains(mark)).collect();
+        Self { low, high, logarithmic: false, marks }
+    }
+
     /// Logarithmic where values span more than a decade and all are above 0, else linear.
     pub fn of_errors(values: &[f64]) -> Self {
         let (least, most) = span(values);
@@ -98,6 +128,12 @@ mod tests {
     fn axes_hold_their_values_between_round_marks() {
         let axis = Axis::linear(&[13.0, 47.0]);
         assert_eq!((axis.low, axis.high, axis.marks.len()), (0.0, 60.0, 7));
+        let axis = Axis::around(&[-0.3, 2.2, f64::NAN]);
+        assert!(axis.low <= -0.3 && axis.high >= 2.2 && axis.marks.contains(&0.0), "{axis:?}");
+        for odd in [&[][..], &[7.0], &[f64::NAN], &[-1e12, -1e12]] {
+            let axis = Axis::around(odd);
+            assert!(axis.high > axis.low && axis.marks.len() > 1, "{odd:?}: {axis:?}");
+        }
         let axis = Axis::of_errors(&[0.013, 0.4]);
         assert!(axis.logarithmic);
         assert!((axis.low - 0.01).abs() < 1e-12 && (axis.high - 0.5).abs() < 1e-12, "{} {}", axis.low, axis.high);
