@@ -140,15 +140,34 @@ fn a_delay_bursts_so_much_later_and_a_deeper_crater_than_an_impact() {
             Happening::Crater { radius_m, changes_posts, .. } => Some((*radius_m, *changes_posts)),
             _ => None,
         };
-        (burst_s - struck_s, events.iter().find_map(|event| radius(&event.what)).unwrap())
+        let place = |what: &Happening| match what {
+            Happening::Burst { point_m, .. } => Some(*point_m),
+            _ => None,
+        };
+        let impact = |what: &Happening| match what {
+            Happening::Impact(strike) => Some(strike.point_m),
+            _ => None,
+        };
+        let first = |is: &dyn Fn(&Happening) -> Option<DVec3>| events.iter().find_map(|event| is(&event.what)).unwrap();
+        let way_m = first(&place).distance(first(&impact));
+        (burst_s - struck_s, way_m, events.iter().find_map(|event| radius(&event.what)))
     };
-    let (now_s, (shallow_m, decal)) = crater(Fuze { trigger: Trigger::Impact, arming_s: 1.0 });
-    assert!(now_s == 0.0 && !decal);
-    for delay_s in [0.001, 0.05, 1.5] {
-        let (later_s, (deep_m, _)) = crater(Fuze { trigger: Trigger::Delay(delay_s), arming_s: 1.0 });
+    let (now_s, way_m, found) = crater(Fuze { trigger: Trigger::Impact, arming_s: 1.0 });
+    let (shallow_m, decal) = found.unwrap();
+    assert!(now_s == 0.0 && way_m == 0.0 && !decal);
+    let mut before_m = 0.0;
+    for delay_s in [0.001, 0.01, 0.05] {
+        let (later_s, way_m, found) = crater(Fuze { trigger: Trigger::Delay(delay_s), arming_s: 1.0 });
+        let deep_m = found.unwrap().0;
         // Scene times of some tens of seconds: a few roundings.
-        assert!((later_s - delay_s).abs() < 1e-12 && deep_m == 2.0 * shallow_m, "{later_s} {deep_m}");
+        assert!((later_s - delay_s).abs() < 1e-12, "{later_s}");
+        assert!(way_m > before_m && deep_m > shallow_m && deep_m <= 2.0 * shallow_m, "{way_m} {deep_m} {shallow_m}");
+        before_m = way_m;
     }
+    // It stops within some tens of milliseconds: a longer delay is no deeper.
+    let [(_, stopped_m, _), (_, later_m, _)] =
+        [0.5, 1.5].map(|delay_s| crater(Fuze { trigger: Trigger::Delay(delay_s), arming_s: 1.0 }));
+    assert!(stopped_m == later_m && stopped_m >= before_m, "{stopped_m} {later_m}");
 }
 
 #[test]

@@ -279,7 +279,10 @@ mod tests {
         assert!(eye.at_m.distance(young.position_m) < 1.5 * WEAPON_M + 2.0, "{}", eye.at_m);
         flying.projectiles = Arc::default();
         flying.time_s += 1.0;
-        assert_eq!(cameras.eye(&flying, &Head::default(), &area).at_m, eye.at_m);
+        let watcher = cameras.eye(&flying, &Head::default(), &area);
+        let away = young.position_m - watcher.at_m;
+        assert!((40.0..=1.1 * STRIKE_M[0]).contains(&away.length()), "{away}");
+        assert!((watcher.attitude * DVec3::NEG_Z).dot(away.normalize()) > 0.999, "{away}");
         flying.time_s += WATCHED_S;
         assert!(cameras.eye(&flying, &Head::default(), &area).at_m.distance(flying.aircraft.position_m) < 40.0);
     }

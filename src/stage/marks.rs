@@ -44,13 +44,15 @@ impl Marks {
         let ground = scenery.scene_ground();
         let is_land = |of: &Decal| !ground.is_water(of.centre_m.x, of.centre_m.y);
         let mut decals: Vec<Decal> = new().filter_map(|event| decal(event, snapshot)).filter(is_land).collect();
+        let craters: Vec<Crater> = new().filter_map(crater).collect();
         // What threw up a crater leaves no mark of its strike beside it.
-        let craters: Vec<Decal> = decals.iter().filter(|of| of.radius_m > ROUND_M).copied().collect();
+        let bowls = craters.iter().map(|crater| (crater.centre_m, crater.radius_m));
+        let small = decals.iter().filter(|of| of.radius_m > ROUND_M).map(|of| (of.centre_m, of.radius_m));
+        let bowls: Vec<(DVec2, f64)> = bowls.chain(small).collect();
         decals.retain(|of| {
-            of.radius_m > ROUND_M
-                || craters.iter().all(|crater| crater.centre_m.distance(of.centre_m) > crater.radius_m)
+            of.radius_m > ROUND_M || bowls.iter().all(|(centre_m, radius_m)| centre_m.distance(of.centre_m) > *radius_m)
         });
-        let edits: Vec<Edit> = new().filter_map(crater).map(Edit::Crater).collect();
+        let edits: Vec<Edit> = craters.into_iter().map(Edit::Crater).collect();
         self.taken = snapshot.events_counted;
         if !decals.is_empty() {
             scenery.things.add_decals(decals);
@@ -182,7 +184,11 @@ mod tests {
         });
         let deepest_m = changes_m.fold(0.0, f64::min);
         assert!(deepest_m < -50.0, "a crater: {deepest_m}");
-        // Another scene's marks go; a mark that is huge is no mark.
+        assert_eq!(scenery.things.decals(), 3, "a crater of the posts is no mark");
+        // Another scene takes the marks of the one before away.
+        let start = sim::aircraft::AircraftState::level(DVec3::Y * 3_000.0, 0.0, 150.0);
+        let fresh = Scene::new(start, UtcTime { unix_ns: 0 }).snapshot();
+        assert!(Marks { taken: 5 }.leave(&fresh, &mut scenery).is_none());
         assert_eq!(scenery.things.decals(), 0);
     }
 }

@@ -4,7 +4,8 @@
 //! targets stand where they are at that time, between the poses of the step. Every hurt target is named by an event, and
 //! every weapon but a gun's round by a score.
 //!
-//! Invariants others rely on: the point of a burst and of a score is the impact's own, to the bit; what is random
+//! Invariants others rely on: the point of a burst and of a score is the impact's own, to the bit, but for a burst of a delay
+//! fuze in the ground, which is farther along the line that it struck on; what is random
 //! depends on the seed, the target and the projectile alone, so not on the order of anything.
 
 use super::arms::Load;
@@ -13,11 +14,13 @@ use super::event::{Happening, Strike};
 use super::shell::Shell;
 use super::target::TargetState;
 use super::{Refused, Scene, SceneGround, found, place};
+use crate::ballistics::projectile::Projectile;
 use crate::ballistics::targets::{Pose, Target};
 use crate::random::Stream;
 use crate::snapshot::{StableId, turned};
 use crate::weapons::armour::DAMAGED_FROM;
-use crate::weapons::crater::{changes_posts, crater};
+use crate::weapons::crater::{changes_posts, crater, vented};
+use crate::weapons::penetration;
 use crate::weapons::score::{Aim, Outcome, Score, miss};
 use crate::weapons::{Damage, Trigger, Warhead, WeaponKind};
 use glam::DVec3;
@@ -38,6 +41,11 @@ pub(super) struct Ended {
     /// Since its release.
     pub age_s: f64,
     pub point_m: DVec3,
+    /// Its velocity there against what it struck, m/s, and the outward normal of that.
+    velocity_mps: DVec3,
+    normal: DVec3,
+    /// Where it bursts, if its delay runs in the ground.
+    burst_m: DVec3,
     /// The target that it struck, and where in it.
     pub target: Option<(StableId, DVec3)>,
     pub object: Option<ObjectId>,
@@ -51,7 +59,25 @@ pub(super) struct Ended {
     scored: Option<StableId>,
     miss: Option<(f64, u32)>,
 }
-coded!(Ended { time_s, id, owner, round, load, age_s, point_m, target, object, in_air, rested, kills, scored, miss });
+coded!(Ended {
+    time_s,
+    id,
+    owner,
+    round,
+    load,
+    age_s,
+    point_m,
+    velocity_mps,
+    normal,
+    burst_m,
+    target,
+    object,
+    in_air,
+    rested,
+    kills,
+    scored,
+    miss
+});
 
 impl Ended {
     /// One that burst in the air.
@@ -64,6 +90,9 @@ impl Ended {
             load,
             age_s,
             point_m,
+            velocity_mps: DVec3::ZERO,
+            normal: DVec3::ZERO,
+            burst_m: point_m,
             target: None,
             object: None,
             in_air: true,
@@ -78,7 +107,24 @@ impl Ended {
     pub fn of_strike(strike: &Strike, shell: &Shell, load: Load, time_s: f64, age_s: f64) -> Self {
         let target = strike.target.map(|id| (id, strike.point_in_target_m));
         let of = Self::in_air(strike.projectile, shell, load, strike.point_m, time_s, age_s);
-        Self { target, object: strike.object, in_air: false, ..of }
+        let (velocity_mps, normal) = (strike.velocity_mps, strike.normal);
+        Self { target, object: strike.object, in_air: false, velocity_mps, normal, ..of }
+    }
+
+    /// Where it is in the ground after a time; where it struck, if it struck something else or too flat to go in.
+    fn goes_to(&self, projectile: &Projectile, after_s: f64, ground: &SceneGround) -> DVec3 {
+        let speed_mps = self.velocity_mps.length();
+        let on_ground = self.target.is_none() && self.object.is_none();
+        let (Some(diameter_m), true) = (projectile.diameter_m, on_ground && speed_mps > 0.0) else {
+            return self.point_m;
+        };
+        let along = self.velocity_mps / speed_mps;
+        if !penetration::goes_in(-along.dot(self.normal)) {
+            return self.point_m;
+        }
+        let softness = penetration::softness(ground.cover_at(self.point_m.x, self.point_m.z));
+        let way_m = penetration::way_m(projectile.mass_kg, diameter_m, speed_mps, softness);
+        self.point_m + along * penetration::gone_m(way_m, speed_mps, after_s)
     }
 
     /// What a restored one must be.
@@ -86,6 +132,7 @@ impl Ended {
         if self.load.weapon as usize >= weapons || !self.rested || self.kills > 1_000_000 {
             return Err(Refused::new("resting: expected a weapon of the catalogue that struck"));
         }
+        place("resting.burst_m", self.burst_m)?;
         place("resting.point_m", self.point_m).map(|_| ())
     }
 }
@@ -145,11 +192,12 @@ impl Scene {
             && !one.rested
         {
             (one.rested, one.kills) = (true, done.kills);
+            one.burst_m = one.goes_to(&weapon.projectile, delay_s, ground);
             one.time_s += delay_s;
             self.resting.push(one);
             return;
         }
-        let mut point_m = one.point_m;
+        let mut point_m = one.burst_m;
         if let Some((target, in_target_m)) = one.target.filter(|_| one.rested)
             && let Some(index) = self.index_of(target)
         {
@@ -184,13 +232,19 @@ impl Scene {
         };
         self.log.add(one.time_s, burst);
         let under_m = ground.height_m(point_m.x, point_m.z);
-        let height_m = if on_ground { Some(0.0) } else { under_m.map(|under_m| point_m.y - under_m) };
+        let over_m = under_m.map(|under_m| point_m.y - under_m);
+        // On the ground to the bit, or in it.
+        let height_m = if on_ground { over_m.map(|over_m| if buried { over_m.min(0.0) } else { 0.0 }) } else { over_m };
         // Water closes over it again.
-        if let Some(crater) = height_m.and_then(|height_m| crater(warhead.tnt_kg, buried, height_m))
+        if let Some(crater) = height_m.and_then(|height_m| crater(warhead.tnt_kg, height_m))
             && !ground.is_water(point_m.x, point_m.z)
         {
             let happening = Happening::Crater {
-                centre_m: if on_ground { point_m } else { DVec3 { y: under_m.unwrap_or(point_m.y), ..point_m } },
+                centre_m: if on_ground && !buried {
+                    point_m
+                } else {
+                    DVec3 { y: under_m.unwrap_or(point_m.y), ..point_m }
+                },
                 radius_m: crater.radius_m,
                 depth_m: crater.depth_m,
                 changes_posts: ground.step_m().is_some_and(|step_m| changes_posts(crater.radius_m, step_m)),
@@ -198,6 +252,10 @@ impl Scene {
             self.log.add(one.time_s, happening);
         }
         if self.swept.is_empty() {
+            return;
+        }
+        let vented = height_m.map_or(1.0, |height_m| vented(warhead.tnt_kg, height_m));
+        if vented <= 0.0 {
             return;
         }
         let reach_m = warhead.reach_m();
@@ -212,7 +270,7 @@ impl Scene {
             if from_m.length() - swept.shape.radius_m() > reach_m {
                 continue;
             }
-            let (id, distance_m) = (swept.id, swept.shape.distance_m(from_m).max(0.0));
+            let (id, distance_m) = (swept.id, swept.shape.distance_m(from_m).max(0.0) / vented);
             let Some(armour) = self.armour_of(id) else { continue };
             let chance = Stream::new(&[self.surroundings.seed, id.0, one.id.0, KEY_DAMAGE]).uniform();
             let amount = if chance < warhead.kills(distance_m, armour) {

@@ -18,7 +18,7 @@ use std::fmt;
 use std::sync::Arc;
 use terrain::Area;
 use terrain::edit::{Edit, EditError};
-use terrain::features::cover::Cover;
+use terrain::features::cover::{Cover, CoverClass};
 use terrain::features::index::{ObjectId, ObjectIndex};
 
 /// Way between two looks at a ground that is a closure, metres: posts stand at least 25 m apart.
@@ -101,6 +101,11 @@ impl SceneGround {
         };
         let surface = self.cover.as_ref().map_or(Surface::PAVED, |cover| Surface::of(cover.class_at(x_m, z_m)));
         Some(Footing { point_m: DVec3::new(north_m, east_m, -height_m), normal: ned_from_world(normal), surface })
+    }
+
+    /// What covers a plan point, if that is known.
+    pub fn cover_at(&self, x_m: f64, z_m: f64) -> Option<CoverClass> {
+        self.cover.as_ref().map(|cover| cover.class_at(x_m, z_m))
     }
 
     /// Whether water covers a plan point, as far as the cover says.

@@ -5,7 +5,7 @@
 //! `delay_s` later; a height fuze bursts at the first instant at which it is armed and no more than `height_m` straight
 //! above the ground, and on impact like an impact fuze if it strikes something before.
 //!
-//! No depth of penetration is computed: a delayed burst counts as buried at the point of impact ([`super::crater`]).
+//! A delayed burst in the ground is as deep as the projectile got by then ([`super::penetration`]).
 
 use crate::scene::codec::{Coded, Reader, SaveError};
 use serde::{Deserialize, Serialize};

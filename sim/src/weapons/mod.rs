@@ -3,7 +3,8 @@
 //! | file | what |
 //! |---|---|
 //! | `weapon.rs`, `builtin.rs` | a gun, rocket or bomb: `W.toml`, and those that are embedded |
-//! | `fuze.rs`, `warhead.rs`, `crater.rs` | when it bursts, what that does, what is left in the ground |
+//! | `fuze.rs`, `penetration.rs` | when it bursts, how deep in the ground |
+//! | `warhead.rs`, `crater.rs` | what that does, what is left in the ground |
 //! | `armour.rs` | classes of armour, states of damage |
 //! | `target_kind.rs` | a kind of target: `T.toml` |
 //! | `ccip.rs` | where it would strike if it were released now |
@@ -17,6 +18,7 @@ pub mod builtin;
 pub mod ccip;
 pub mod crater;
 pub mod fuze;
+pub mod penetration;
 pub mod score;
 pub mod target_kind;
 pub mod warhead;
