@@ -26,7 +26,7 @@ use crate::weapons::Tally;
 use std::sync::Arc;
 
 const WORD: &[u8; 8] = b"PLGSCENE";
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// Most ids, rounds and events: no run of a scene counts so far, and a sum of two still fits.
 const MOST_COUNTED: u64 = 1 << 60;
 /// Fastest projectile that is taken back, m/s: above twice what a muzzle and its owner may give.
