@@ -134,7 +134,8 @@ pub struct FlyArgs {
     #[arg(long, value_name = "V", value_parser = values::speed_mps, allow_hyphen_values = true)]
     pub speed_mps: Option<f64>,
     /// What the pilot flies: `point_mass`, which always flies well; `trainer`, a light aircraft with an engine, wheels and a
-    /// stall, trimmed where the track begins; or a body's M.toml with the trainer's names of controls.
+    /// stall; `jet`, a fighter by NASA's wind tunnel tables; `hover`, a light helicopter, simplified; or a body's M.toml with
+    /// their names of controls. A body is trimmed where the track begins.
     #[arg(long, value_name = "A", default_value = "point_mass")]
     pub aircraft: String,
     /// Play these inputs (I.csv), as --record writes them, in the place of a pilot's.

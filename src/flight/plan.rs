@@ -14,19 +14,16 @@ use glam::DVec3;
 use sim::aircraft::{ALTITUDE_M, AircraftState};
 use sim::clock::DEFAULT_STEP_HZ;
 use sim::file::FileError;
-use sim::handling::{self, Fixed};
-use sim::rigid::Model;
+use sim::rigid::{Model, builtin};
 use sim::scene::{BodyStart, Catalogue, Surroundings};
 use sim::situation::{BUILTIN, Situation};
 use sim::track::{Flight, ISSYK_KUL_FLIGHT, TrackError, TrackHeight};
-use sim::{Controls, Levers, Scene, Track, UtcTime};
+use sim::{Levers, Scene, Track, UtcTime};
 use std::path::Path;
 use std::sync::Arc;
 use terrain::store::World;
 use terrain::{Area, Geodetic};
 
-/// The embedded trainer.
-const TRAINER: &str = include_str!("../../assets/aircraft/trainer.toml");
 /// Speed of a straight track unless asked for, m/s.
 const SPEED_MPS: f64 = 250.0;
 /// Height of a diagonal track over the highest ground about it, metres.
@@ -180,10 +177,7 @@ fn trimmed(track: &Track, model: &Arc<Model>, speed_mps: f64, date: UtcTime) -> 
     let failed = |why: String| Failure::Failed(format!("{}: {why}", model.file.display()));
     let refused = |why: sim::scene::Refused| failed(why.to_string());
     let begins = track.state(0.0, 0.5);
-    let held = handling::level(model, begins.position_m.y, Fixed::Speed(speed_mps)).map_err(failed)?;
     let heading_rad = begins.angles().heading_rad;
-    let pitch_rad = sim::rigid::motion::attitude(&held.y).to_euler(glam::EulerRot::ZYX).1;
-    let angles = sim::frame::Angles { heading_rad, pitch_rad, roll_rad: 0.0 };
     let mut catalogue = Catalogue::new();
     catalogue.add_model("own", (**model).clone()).map_err(refused)?;
     let level = AircraftState::level(begins.position_m, heading_rad, speed_mps);
@@ -193,21 +187,14 @@ fn trimmed(track: &Track, model: &Arc<Model>, speed_mps: f64, date: UtcTime) -> 
         model: "own".to_owned(),
         position_m: level.position_m,
         velocity_mps: level.velocity_mps,
-        attitude: sim::frame::attitude(angles),
+        attitude: level.attitude,
         rates_radps: DVec3::ZERO,
         fuel: None,
     };
     let id = scene.add_body(&start).map_err(refused)?;
     scene.order(sim::scene::Command::FlyBody { id }).map_err(refused)?;
-    let part = |stem: &str| {
-        handling::control(model, stem).map_or(0.0, |place| {
-            let (of, value) = (&model.controls[place], held.motion.controls[place]);
-            if value < 0.0 { -value / of.min } else { value / of.max }
-        })
-    };
-    scene.set_controls(Controls { throttle: part("throttle"), ..Controls::default() });
-    let mixture = if model.power.is_some() { part("mixture") } else { 1.0 };
-    scene.set_levers(Levers { trim: part("elevator_trim"), mixture, ..Levers::default() });
+    scene.set_levers(Levers { gear: 0.0, ..Levers::default() });
+    scene.trim_flown().map_err(refused)?;
     Ok(scene)
 }
 
@@ -229,13 +216,15 @@ fn situation(named: &Path) -> Result<Situation, Failure> {
 /// The body that is asked for, with the speed that it begins at.
 fn aircraft(args: &FlyArgs) -> Result<Option<(Arc<Model>, f64)>, Failure> {
     let unusable = |error: FileError| Failure::Misuse(error.to_string());
-    let model = match args.aircraft.as_str() {
-        "point_mass" => return Ok(None),
-        "trainer" => Model::from_text(Path::new("trainer"), TRAINER).map_err(unusable)?,
-        file if file.ends_with(".toml") => Model::read(Path::new(file)).map_err(unusable)?,
-        found => {
+    let asked = args.aircraft.as_str();
+    let model = match builtin::named(asked) {
+        _ if asked == "point_mass" => return Ok(None),
+        Some(model) => model.map_err(unusable)?,
+        None if asked.ends_with(".toml") => Model::read(Path::new(asked)).map_err(unusable)?,
+        None => {
+            let known = builtin::names();
             return Err(Failure::Misuse(format!(
-                "--aircraft: expected point_mass, trainer or a file M.toml, found {found}"
+                "--aircraft: expected point_mass, {known} or a file M.toml, found {asked}"
             )));
         }
     };

@@ -17,9 +17,10 @@ pub mod runway;
 
 use crate::atmosphere::Atmosphere;
 use crate::case::{Attitude, Initial, RatesFrame, Setting, Trim, Velocity};
+use crate::frame::{Angles, world_attitude_from_ned};
 use crate::planet::{Place, Planet};
 use crate::rigid::Model;
-use crate::rigid::motion::{RigidMotion, State};
+use crate::rigid::motion::{self, RigidMotion, State};
 use crate::rigid::quantity::without_unit;
 use crate::rigid::{start, trim};
 use crate::wind::Wind;
@@ -89,6 +90,32 @@ pub fn level(model: &Arc<Model>, altitude_m: f64, fixed: Fixed) -> Result<Held, 
     let y = start::state(&motion.planet, &found.initial);
     motion.settle_shaft(&y);
     Ok(Held { motion, y })
+}
+
+/// What a body needs to fly on level as it goes, loaded as it is: its controls, and how it then points (world frame).
+///
+/// # Errors
+/// A sentence: a control is missing, or there is no balance.
+pub(crate) fn level_from(motion: &mut RigidMotion, y: &State) -> Result<(Vec<f64>, Angles), String> {
+    let model = motion.model.clone();
+    let name = |stem: &str| needed(&model, stem).map(|place| model.controls[place].name.clone());
+    let pitch = name("elevator_trim").or_else(|_| name("elevator"))?;
+    let position = motion::position(y);
+    lean(motion, motion.planet.altitude_m(position));
+    let throttle = needed(&model, "throttle")?;
+    motion.controls[throttle] = 0.6 * model.controls[throttle].max;
+    let heading_rad = motion::angles_of(&glam::DMat3::from_quat(motion::attitude(y)))[2];
+    let from = Initial {
+        flat_m: Some(position),
+        // What stands in the air is held as if it crept ahead: trim takes no path without a direction.
+        velocity: Velocity::Ned(motion::velocity(y) + DVec3::X * 1e-9),
+        attitude: Attitude::Angles([0.0, 0.0, heading_rad]),
+        ..initial(0.0, DVec3::ZERO)
+    };
+    let wanted = Trim { vary: vec![pitch, name("throttle")?, "pitch_deg".to_owned()], set: BTreeMap::new() };
+    let found = trim::trim(motion, &from, &wanted)?;
+    let turned = motion::attitude(&start::state(&motion.planet, &found.initial));
+    Ok((motion.controls.clone(), crate::frame::angles(world_attitude_from_ned(turned))))
 }
 
 /// A start over a plane, level, northward.

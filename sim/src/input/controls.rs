@@ -105,6 +105,8 @@ pub enum Command {
     NextWeapon,
     /// How many bombs or rockets leave at a press of the trigger.
     NextRipple,
+    /// Drops all bombs and pods unarmed.
+    Jettison,
     /// The trigger is pressed.
     Trigger,
     /// The trigger is let go.
@@ -159,6 +161,7 @@ impl fmt::Display for Command {
             Self::MasterArm => "master arm",
             Self::NextWeapon => "next weapon",
             Self::NextRipple => "more or fewer in a row",
+            Self::Jettison => "jettison",
             Self::Trigger => "trigger",
             Self::TriggerEnd => "trigger let go",
             Self::TimeForward => "an hour later",
@@ -208,6 +211,7 @@ const NAMES: &[(&str, Command)] = &[
     ("master_arm", Command::MasterArm),
     ("next_weapon", Command::NextWeapon),
     ("next_ripple", Command::NextRipple),
+    ("jettison", Command::Jettison),
     ("trigger", Command::Trigger),
     ("trigger_end", Command::TriggerEnd),
     ("time_forward", Command::TimeForward),

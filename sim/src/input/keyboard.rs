@@ -60,6 +60,7 @@ pub const DEFAULT_KEYS: &[(&str, KeyAction)] = &[
     ("KeyM", Do(Command::MasterArm)),
     ("KeyN", Do(Command::NextWeapon)),
     ("KeyB", Do(Command::NextRipple)),
+    ("KeyO", Do(Command::Jettison)),
     ("KeyP", Do(Command::Pause)),
     ("KeyF", Do(Command::Freeze)),
     ("KeyR", Do(Command::Reset)),

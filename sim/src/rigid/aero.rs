@@ -104,6 +104,8 @@ pub struct BoundTable {
     pub arguments: Vec<String>,
     /// Whether an argument outside is an error.
     pub refuse_outside: bool,
+    /// Whether an argument is a signal, so that it waits for them.
+    pub is_late: bool,
 }
 
 /// The tables of a model.
@@ -114,11 +116,18 @@ pub struct Tables(pub Vec<BoundTable>);
 pub type TableValues = [f64; MOST_TABLES];
 
 impl Tables {
-    /// The value of each at the flight's quantities.
+    /// The value of each at the flight's quantities; of those that wait for signals only if `late`, of the others if not.
     #[inline]
-    pub fn values(&self, slots: &[f64; SLOTS]) -> TableValues {
+    pub fn values(&self, slots: &[f64; SLOTS], late: bool) -> TableValues {
         let mut values = [0.0; MOST_TABLES];
-        for (value, bound) in values.iter_mut().zip(&self.0) {
+        self.fill(slots, late, &mut values);
+        values
+    }
+
+    /// The same into values, the others left as they are.
+    #[inline]
+    pub fn fill(&self, slots: &[f64; SLOTS], late: bool, values: &mut TableValues) {
+        for (value, bound) in values.iter_mut().zip(&self.0).filter(|(_, bound)| bound.is_late == late) {
             *value = match bound.slots.as_slice() {
                 [x] => bound.table.at(&[slots[*x]]),
                 [x, y] => bound.table.at(&[slots[*x], slots[*y]]),
@@ -131,7 +140,6 @@ impl Tables {
                 }
             };
         }
-        values
     }
 
     /// The first argument outside a table that refuses it, as a sentence.

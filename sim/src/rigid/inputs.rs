@@ -104,7 +104,7 @@ mod tests {
 
     fn controls() -> Vec<Control> {
         ["elevator_rad", "throttle_norm"]
-            .map(|name| Control { name: name.to_owned(), min: -1.0, max: 1.0, initial: 0.0, per_s: None })
+            .map(|name| Control { name: name.to_owned(), min: -1.0, max: 1.0, initial: 0.0, per_s: None, lag_s: None })
             .to_vec()
     }
 

@@ -87,11 +87,16 @@ enum From {
 }
 
 impl Links {
-    /// Binds the files. `found` goes before everything else.
+    /// Binds the files. `found` goes before everything else; their outputs stand behind the controls and so many signals.
     ///
     /// # Errors
     /// [`FileError`] names the file and the variable: no value for an input, an unknown name or unit, a cycle of files.
-    pub fn bind(sources: &[Source], controls: &[Control], found: &[Found]) -> Result<Self, FileError> {
+    pub fn bind(
+        sources: &[Source],
+        controls: &[Control],
+        signals: usize,
+        found: &[Found],
+    ) -> Result<Self, FileError> {
         let mut origins = Vec::new();
         for (index, source) in sources.iter().enumerate() {
             check_names(source)?;
@@ -110,7 +115,7 @@ impl Links {
         }
         let mut links = Self::default();
         let mut slot_of = BTreeMap::new();
-        let mut next = super::quantity::QUANTITIES + controls.len();
+        let mut next = super::quantity::QUANTITIES + controls.len() + signals;
         for (index, names) in asked.iter().enumerate() {
             for name in names {
                 slot_of.insert((index, name.clone()), next);

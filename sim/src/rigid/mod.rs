@@ -6,7 +6,9 @@
 //! | `model_file.rs` | `M.toml` as it is written |
 //! | `model_checks.rs` | every check on it |
 //! | `model.rs` | the checked model |
+//! | `signal.rs` | numbers that a model makes of the flight and its controls |
 //! | `aero.rs` | coefficients, forces and moments |
+//! | `builtin.rs` | the embedded aircraft |
 //! | `gear/` | wheels, and what else meets the ground |
 //! | `power/` | a piston engine and its propeller |
 //! | `handbook.rs` | figures that a model is held to |
@@ -23,6 +25,7 @@
 //! Body axes: x forward, y right, z down. SI; radians inside. The position is that of the centre of gravity.
 
 pub mod aero;
+pub mod builtin;
 pub mod column;
 pub mod gear;
 pub mod handbook;
@@ -34,6 +37,7 @@ mod model_file;
 pub mod motion;
 pub mod power;
 pub mod quantity;
+pub mod signal;
 pub mod simulation;
 pub mod start;
 pub mod stiffness;

@@ -12,12 +12,14 @@ use super::gear::file::contacts;
 use super::handbook::Handbook;
 use super::links::{self, Found, LinkMemory, Links, Source};
 use super::model_checks::{
-    bound_tables, check_body, controls, needs, notes, sources, stall_cues, tank, tensor, terms, thrusts,
+    bound_tables, check_body, controls, names_of, needs, notes, sources, stall_cues, tank, tensor, terms, thrusts,
 };
 use super::model_file::{AxesFile, ModelFile};
 use super::power::file::power_plant;
 use super::power::shaft::PowerPlant;
+use super::signal::{Signal, signals, tables_and_signals};
 use super::quantity::{QUANTITIES, Quantity, SLOTS, without_unit};
+use crate::autopilot::Tuning;
 use crate::case::Setting;
 use crate::daveml::si_factor;
 use crate::file::{self, FileError};
@@ -37,6 +39,15 @@ pub struct Control {
     pub initial: f64,
     /// How fast it moves, in its own unit a second; `None`: at once.
     pub per_s: Option<f64>,
+    /// Time constant with which it follows what it is told, seconds; `None`: at once.
+    pub lag_s: Option<f64>,
+}
+
+impl Control {
+    /// Whether it takes its time.
+    pub fn is_slow(&self) -> bool {
+        self.per_s.is_some() || self.lag_s.is_some()
+    }
 }
 
 /// Where fuel lies, and how much goes in.
@@ -46,6 +57,8 @@ pub struct FuelTank {
     pub at_m: DVec3,
     /// kg.
     pub capacity_kg: f64,
+    /// Slot of the signal that is the engine's flow, kg/s.
+    pub flow_slot: Option<usize>,
 }
 
 /// Angles of attack at which a stall tells itself, radians.
@@ -109,6 +122,9 @@ pub struct Model {
     pub stall: Option<StallCues>,
     /// What its handbook says.
     pub handbook: Option<Handbook>,
+    /// How an autopilot flies it.
+    pub autopilot: Tuning,
+    signals: Vec<Signal>,
     terms: Vec<Term>,
     thrusts: Vec<Thrust>,
     tables: Tables,
@@ -163,10 +179,14 @@ impl Model {
         let (mass_kg, inertia_kgm2, cg_m) = body;
         check_body(mass_kg, inertia_kgm2).map_err(here)?;
 
-        let (tables, table_names) = bound_tables(&file, &controls).map_err(here)?;
-        let terms = terms(&file, &controls, &table_names).map_err(here)?;
-        let thrusts = thrusts(&file.thrust, &controls, &table_names).map_err(here)?;
-        let links = Links::bind(&sources, &controls, &[])?;
+        let table_names: Vec<String> = file.table.keys().cloned().collect();
+        let signals = signals(&file, &controls, &table_names).map_err(here)?;
+        let mut names = names_of(&controls);
+        names.extend(signals.iter().map(|signal| signal.name.clone()));
+        let tables = bound_tables(&file, &names, QUANTITIES + controls.len()).map_err(here)?;
+        let terms = terms(&file, &names, &table_names).map_err(here)?;
+        let thrusts = thrusts(&file.thrust, &names, &table_names).map_err(here)?;
+        let links = Links::bind(&sources, &controls, signals.len(), &[])?;
         let (area, span, chord) = (
             file.reference.area_m2.or(constants.area_m2),
             file.reference.span_m.or(constants.span_m),
@@ -193,8 +213,10 @@ impl Model {
         }
         let contacts = contacts(&file.wheel, &file.skid, &controls, mass_kg).map_err(here)?;
         let power = power_plant(file.engine.as_ref(), file.propeller.as_ref(), &controls).map_err(here)?;
-        let tank = file.fuel.as_ref().map(|fuel| tank(fuel, mass_kg)).transpose().map_err(here)?;
+        let tank = file.fuel.as_ref().map(|fuel| tank(fuel, mass_kg, &names)).transpose().map_err(here)?;
         let stall = file.stall.as_ref().map(stall_cues).transpose().map_err(here)?;
+        let autopilot = file.autopilot.unwrap_or_default();
+        autopilot.check().map_err(here)?;
         let mut model = Self {
             file: path.to_owned(),
             mass_kg,
@@ -218,6 +240,8 @@ impl Model {
             tank,
             stall,
             handbook: file.handbook.clone(),
+            autopilot,
+            signals,
             terms,
             thrusts,
             tables,
@@ -239,7 +263,7 @@ impl Model {
     /// [`FileError`] if no file has a variable of such a name.
     pub fn with_found(&self, found: &[Found]) -> Result<Self, FileError> {
         let mut model = self.clone();
-        model.links = Links::bind(&self.sources, &self.controls, found)?;
+        model.links = Links::bind(&self.sources, &self.controls, self.signals.len(), found)?;
         model.note_uses();
         Ok(model)
     }
@@ -270,6 +294,12 @@ impl Model {
         self.controls.iter().position(|control| control.name == name)
     }
 
+    /// The slot of a signal.
+    pub fn signal_slot(&self, name: &str) -> Option<usize> {
+        let place = self.signals.iter().position(|signal| signal.name == name)?;
+        Some(QUANTITIES + self.controls.len() + place)
+    }
+
     /// Values of all controls before any input.
     pub fn initial_controls(&self) -> Vec<f64> {
         self.controls.iter().map(|control| control.initial).collect()
@@ -288,6 +318,7 @@ impl Model {
 
     fn note_uses(&mut self) {
         let factors = self.terms.iter().map(|t| &t.of).chain(self.thrusts.iter().map(|t| &t.of));
+        let factors = factors.chain(self.signals.iter().flat_map(|signal| &signal.terms));
         let slots = factors.flat_map(|of| of.times.iter().copied());
         let of_tables = self.tables.0.iter().flat_map(|bound| bound.slots.iter().copied());
         let mut uses = [false; QUANTITIES];
@@ -343,7 +374,7 @@ impl Model {
         cg_m: DVec3,
         memory: &mut LinkMemory,
     ) -> Loads {
-        let tables = self.tables.values(slots);
+        let tables = tables_and_signals(&self.tables, &self.signals, QUANTITIES + self.controls.len(), slots);
         let mut c = [0.0; COEFFICIENTS];
         for term in &self.terms {
             c[term.to] += term.of.product(slots, &tables);

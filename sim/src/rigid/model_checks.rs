@@ -15,7 +15,9 @@ use std::sync::Arc;
 /// Whether a term or a thrust asks for a table.
 pub(super) fn is_asked(file: &ModelFile, name: &String) -> bool {
     let asked = |of: &Option<String>| of.as_ref() == Some(name);
+    let signals = file.signal.iter().flat_map(|signal| &signal.term);
     file.aero.term.iter().any(|term| asked(&term.table) || asked(&term.and_table))
+        || signals.into_iter().any(|term| asked(&term.table) || asked(&term.and_table))
         || file.thrust.iter().any(|thrust| asked(&thrust.table))
 }
 
@@ -24,7 +26,7 @@ pub(super) fn notes(file: &ModelFile) -> Vec<String> {
     let mut notes = Vec::new();
     for (name, table) in &file.table {
         if !is_asked(file, name) {
-            notes.push(format!("table.{name}: no term and no thrust asks for it"));
+            notes.push(format!("table.{name}: no term, no thrust and no signal asks for it"));
         }
         for (axis, breakpoints) in table.axes.iter().zip(&table.breakpoints) {
             let most = breakpoints.iter().fold(0.0f64, |most, x| most.max(x.abs()));
@@ -41,7 +43,8 @@ pub(super) fn needs(key: &str, terms: &[Term], file: &ModelFile) -> bool {
     let moment = |c: Coefficient| terms.iter().any(|t| t.to == c as usize);
     let hat = |name: &str| {
         let in_terms = file.aero.term.iter().flat_map(|t| &t.times);
-        in_terms.chain(file.table.values().flat_map(|t| &t.axes)).any(|used| used == name)
+        let in_signals = file.signal.iter().flat_map(|s| &s.term).flat_map(|t| &t.times);
+        in_terms.chain(in_signals).chain(file.table.values().flat_map(|t| &t.axes)).any(|used| used == name)
     };
     match key {
         "area_m2" => true,
@@ -70,14 +73,17 @@ pub(super) fn controls(file: &[(String, ControlFile)]) -> Result<Vec<Control>, S
         if Quantity::named(name).is_some() {
             return Err(format!("controls.{name}: expected another name, this is a quantity of the flight"));
         }
-        let ControlFile { min, max, initial, per_s } = *control;
+        let ControlFile { min, max, initial, per_s, lag_s } = *control;
         if !(min <= initial && initial <= max) {
             return Err(format!("controls.{name}: expected min <= initial <= max, found {min}, {initial}, {max}"));
         }
         if let Some(found) = per_s.filter(|per_s| !(*per_s > 0.0 && *per_s < 1e9)) {
             return Err(format!("controls.{name}.per_s: expected a number above 0, found {found}"));
         }
-        Ok(Control { name: name.clone(), min, max, initial, per_s })
+        if let Some(found) = lag_s.filter(|lag_s| !(*lag_s > 0.0 && *lag_s < 1e4)) {
+            return Err(format!("controls.{name}.lag_s: expected seconds above 0, found {found}"));
+        }
+        Ok(Control { name: name.clone(), min, max, initial, per_s, lag_s })
     };
     file.iter().map(one).collect()
 }
@@ -126,24 +132,30 @@ pub(super) fn check_body(mass_kg: f64, inertia: DMat3) -> Result<(), String> {
     Ok(())
 }
 
-/// The slot of a name that a term or table multiplies with.
-pub(super) fn slot(name: &str, controls: &[Control]) -> Option<usize> {
-    let of_control = || controls.iter().position(|c| c.name == name).map(|place| QUANTITIES + place);
+/// Names of controls, in order; signals are added behind them.
+pub(super) fn names_of(controls: &[Control]) -> Vec<String> {
+    controls.iter().map(|control| control.name.clone()).collect()
+}
+
+/// The slot of a name that a term or table multiplies with: a quantity's or, of those behind them, a control's or signal's.
+pub(super) fn slot(name: &str, behind: &[String]) -> Option<usize> {
+    let of_control = || behind.iter().position(|known| known == name).map(|place| QUANTITIES + place);
     Quantity::named(name).map(Quantity::slot).or_else(of_control)
 }
 
-pub(super) fn slots(key: &str, names: &[String], controls: &[Control]) -> Result<Vec<usize>, String> {
+pub(super) fn slots(key: &str, names: &[String], behind: &[String]) -> Result<Vec<usize>, String> {
     let one = |name: &String| {
-        slot(name, controls).ok_or_else(|| {
+        slot(name, behind).ok_or_else(|| {
             let known: Vec<&str> =
-                super::quantity::ALL.iter().map(|q| q.1).chain(controls.iter().map(|c| c.name.as_str())).collect();
+                super::quantity::ALL.iter().map(|q| q.1).chain(behind.iter().map(String::as_str)).collect();
             format!("{key}: found {name}, expected one of {}", known.join(", "))
         })
     };
     names.iter().map(one).collect()
 }
 
-pub(super) fn bound_tables(file: &ModelFile, controls: &[Control]) -> Result<(Tables, Vec<String>), String> {
+/// The tables of a file; `first_signal` is the slot of the first signal.
+pub(super) fn bound_tables(file: &ModelFile, behind: &[String], first_signal: usize) -> Result<Tables, String> {
     if file.table.len() > MOST_TABLES {
         return Err(format!("table: expected at most {MOST_TABLES}, found {}", file.table.len()));
     }
@@ -155,25 +167,25 @@ pub(super) fn bound_tables(file: &ModelFile, controls: &[Control]) -> Result<(Ta
             return Err(format!("{key}.breakpoints: expected one list an axis, {axes}, found {breakpoints}"));
         }
         let built = Table::new(table.breakpoints.clone(), table.values.clone(), table.interpolation.into());
+        let slots = slots(&format!("{key}.axes"), &table.axes, behind)?;
         all.push(BoundTable {
             name: name.clone(),
             table: built.map_err(|error| format!("{key}: {error}"))?,
-            slots: slots(&format!("{key}.axes"), &table.axes, controls)?,
+            is_late: slots.iter().any(|slot| *slot >= first_signal),
+            slots,
             arguments: table.axes.clone(),
             refuse_outside: table.outside == OutsideFile::Error && is_asked(file, name),
         });
     }
-    let names = all.iter().map(|bound| bound.name.clone()).collect();
-    Ok((Tables(all), names))
+    Ok(Tables(all))
 }
 
 pub(super) fn factors(
     key: &str,
     value: f64,
-    table: Option<&String>,
-    and_table: Option<&String>,
+    [table, and_table]: [Option<&String>; 2],
     times: &[String],
-    controls: &[Control],
+    behind: &[String],
     tables: &[String],
 ) -> Result<Factors, String> {
     let place = |name: &String| {
@@ -181,10 +193,10 @@ pub(super) fn factors(
         tables.iter().position(|known| known == name).ok_or_else(missing)
     };
     let (table, and_table) = (table.map(place).transpose()?, and_table.map(place).transpose()?);
-    Ok(Factors { value, table, and_table, times: slots(&format!("{key}.times"), times, controls)? })
+    Ok(Factors { value, table, and_table, times: slots(&format!("{key}.times"), times, behind)? })
 }
 
-pub(super) fn terms(file: &ModelFile, controls: &[Control], tables: &[String]) -> Result<Vec<Term>, String> {
+pub(super) fn terms(file: &ModelFile, behind: &[String], tables: &[String]) -> Result<Vec<Term>, String> {
     let mut all = Vec::new();
     for (i, term) in file.aero.term.iter().enumerate() {
         let key = format!("aero.term[{i}]");
@@ -197,13 +209,13 @@ pub(super) fn terms(file: &ModelFile, controls: &[Control], tables: &[String]) -
             return Err(format!("{key}: expected a value or a table, found neither"));
         }
         let value = term.value.unwrap_or(1.0);
-        let [table, and_table] = [term.table.as_ref(), term.and_table.as_ref()];
-        all.push(Term { to, of: factors(&key, value, table, and_table, &term.times, controls, tables)? });
+        let both = [term.table.as_ref(), term.and_table.as_ref()];
+        all.push(Term { to, of: factors(&key, value, both, &term.times, behind, tables)? });
     }
     Ok(all)
 }
 
-pub(super) fn thrusts(file: &[ThrustFile], controls: &[Control], tables: &[String]) -> Result<Vec<Thrust>, String> {
+pub(super) fn thrusts(file: &[ThrustFile], behind: &[String], tables: &[String]) -> Result<Vec<Thrust>, String> {
     let mut all = Vec::new();
     for (i, thrust) in file.iter().enumerate() {
         let key = format!("thrust[{i}]");
@@ -214,18 +226,25 @@ pub(super) fn thrusts(file: &[ThrustFile], controls: &[Control], tables: &[Strin
             // A table alone is newtons forward.
             force_n: DVec3::from_array(thrust.force_N.unwrap_or([1.0, 0.0, 0.0])),
             at_m: DVec3::from_array(thrust.at_m.unwrap_or_default()),
-            of: factors(&key, 1.0, thrust.table.as_ref(), None, &thrust.times, controls, tables)?,
+            of: factors(&key, 1.0, [thrust.table.as_ref(), None], &thrust.times, behind, tables)?,
         });
     }
     Ok(all)
 }
 
-pub(super) fn tank(file: &FuelFile, mass_kg: f64) -> Result<FuelTank, String> {
+/// The tank of a file; `behind` are the names of controls and signals.
+pub(super) fn tank(file: &FuelFile, mass_kg: f64, behind: &[String]) -> Result<FuelTank, String> {
     let capacity_kg = file.capacity_kg;
+    let flow = |name: &String| {
+        let known = || behind.iter().filter(|name| name.ends_with("_kgps")).cloned().collect::<Vec<_>>().join(", ");
+        let of = slot(name, behind).filter(|_| name.ends_with("_kgps"));
+        of.ok_or_else(|| format!("fuel.flow: expected a signal in kg/s, one of [{}], found {name}", known()))
+    };
     if !(capacity_kg > 0.0 && capacity_kg < mass_kg) {
         return Err(format!("fuel.capacity_kg: expected a number within 0 and {mass_kg}, found {capacity_kg}"));
     }
-    Ok(FuelTank { at_m: DVec3::from_array(file.at_m), capacity_kg })
+    let flow_slot = file.flow.as_ref().map(flow).transpose()?;
+    Ok(FuelTank { at_m: DVec3::from_array(file.at_m), capacity_kg, flow_slot })
 }
 
 pub(super) fn stall_cues(file: &StallFile) -> Result<StallCues, String> {

@@ -3,6 +3,7 @@
 use super::gear::file::{SkidFile, WheelFile};
 use super::handbook::Handbook;
 use super::power::file::{EngineFile, PropellerFile};
+use crate::autopilot::Tuning;
 use crate::case::Setting;
 use crate::table::Interpolation;
 use serde::de::{MapAccess, Visitor};
@@ -20,6 +21,8 @@ pub(super) struct ModelFile {
     #[serde(default, deserialize_with = "in_order")]
     pub controls: Vec<(String, ControlFile)>,
     #[serde(default)]
+    pub signal: Vec<SignalFile>,
+    #[serde(default)]
     pub aero: AeroFile,
     #[serde(default)]
     pub table: BTreeMap<String, TableFile>,
@@ -35,6 +38,7 @@ pub(super) struct ModelFile {
     pub propeller: Option<PropellerFile>,
     pub fuel: Option<FuelFile>,
     pub stall: Option<StallFile>,
+    pub autopilot: Option<Tuning>,
     pub handbook: Option<Handbook>,
 }
 
@@ -89,6 +93,27 @@ pub(super) struct ControlFile {
     pub initial: f64,
     /// How fast it moves, in its own unit a second; at once if left out.
     pub per_s: Option<f64>,
+    /// Time in which it goes all but 1/e of the rest of its way, seconds; at once if left out.
+    pub lag_s: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SignalFile {
+    pub name: String,
+    pub min: f64,
+    pub max: f64,
+    pub term: Vec<SignalTermFile>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SignalTermFile {
+    pub value: Option<f64>,
+    pub table: Option<String>,
+    pub and_table: Option<String>,
+    #[serde(default)]
+    pub times: Vec<String>,
 }
 
 #[derive(Deserialize)]
@@ -97,6 +122,8 @@ pub(super) struct FuelFile {
     #[serde(deserialize_with = "crate::file::exactly")]
     pub at_m: [f64; 3],
     pub capacity_kg: f64,
+    /// Name of the signal that is the engine's flow, kg/s.
+    pub flow: Option<String>,
 }
 
 #[derive(Deserialize)]

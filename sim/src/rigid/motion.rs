@@ -47,10 +47,18 @@ pub struct RigidMotion {
     pub controls: Vec<f64>,
     /// Velocity of a gust along body axes, m/s, held over a step.
     pub gust_mps: DVec3,
-    /// Mass of now, kg: the model's unless the caller burns fuel. The inertia stays the model's.
+    /// Mass of now, kg: the model's unless the caller burns fuel or hangs stores on it.
     pub mass_kg: f64,
     /// Centre of gravity of now from the reference point.
     pub cg_m: DVec3,
+    /// Inertia tensor of now about it, kg m2: the model's unless the caller hangs stores on it.
+    pub inertia_kgm2: DMat3,
+    /// Its inverse.
+    pub inverse_inertia: DMat3,
+    /// Drag area of stores, m2, and where their drag acts, from the reference point.
+    pub stores_drag_m2: f64,
+    /// See above.
+    pub stores_at_m: DVec3,
     /// Speed of the engine's shaft, rad/s, held over a piece of a step; 0 without an engine of its own.
     pub shaft_radps: f64,
     /// Altitude of the ground under it, metres, held over a step; `None` is far below.
@@ -148,6 +156,7 @@ impl RigidMotion {
         let (controls, memory, still) = (model.initial_controls(), RefCell::new(model.memory()), wind.is_still());
         let mass_kg = model.mass_kg;
         let cg_m = model.cg_m;
+        let (inertia_kgm2, inverse_inertia) = (model.inertia_kgm2, model.inverse_inertia);
         Self {
             model,
             planet,
@@ -157,6 +166,10 @@ impl RigidMotion {
             gust_mps: DVec3::ZERO,
             mass_kg,
             cg_m,
+            inertia_kgm2,
+            inverse_inertia,
+            stores_drag_m2: 0.0,
+            stores_at_m: DVec3::ZERO,
             shaft_radps: 0.0,
             ground_m: None,
             treads: Vec::new(),
@@ -171,6 +184,7 @@ impl RigidMotion {
     pub fn set_model(&mut self, model: Arc<Model>) {
         self.memory = RefCell::new(model.memory());
         (self.mass_kg, self.cg_m) = (model.mass_kg, model.cg_m);
+        (self.inertia_kgm2, self.inverse_inertia) = (model.inertia_kgm2, model.inverse_inertia);
         self.model = model;
     }
 
@@ -251,6 +265,9 @@ impl RigidMotion {
         set(Quantity::CrossTrackM, y[7]);
         set(Quantity::DensityKgpm3, air.density_kgpm3);
         set(Quantity::DynamicPressurePa, dynamic_pressure_pa);
+        set(Quantity::AheadMps, through_air.x);
+        set(Quantity::RightMps, through_air.y);
+        set(Quantity::DownMps, through_air.z);
         set(Quantity::AglM, self.ground_m.map_or(FAR_ABOVE_M, |ground_m| place.altitude_m - ground_m));
 
         let mut memory = self.memory.borrow_mut();
@@ -261,6 +278,12 @@ impl RigidMotion {
             let force = DVec3::X * thrust_n;
             loads.force_n += force;
             loads.moment_nm += (power.at_m - self.cg_m).cross(force);
+        }
+        if self.stores_drag_m2 > 0.0 {
+            // Dynamic pressure times area, along the wind.
+            let force = through_air * (-0.5 * air.density_kgpm3 * tas * self.stores_drag_m2);
+            loads.force_n += force;
+            loads.moment_nm += (self.stores_at_m - self.cg_m).cross(force);
         }
         Sample {
             frame_from_body,
@@ -304,8 +327,11 @@ impl RigidMotion {
         }
     }
 
-    /// Fuel that the engine takes, kg/s; `None` without one of its own.
+    /// Fuel that the engine takes, kg/s; `None` without one of its own and without a flow of the model's.
     pub fn fuel_kgps(&self, y: &State) -> Option<f64> {
+        if let Some(slot) = self.model.tank.and_then(|tank| tank.flow_slot) {
+            return Some(self.sample(y, false).slots[slot].max(0.0) * self.thrust_share);
+        }
         let (power, set, ..) = self.shaft(y)?;
         Some(power.engine.fuel_kgps(&set, self.shaft_radps))
     }
@@ -359,7 +385,6 @@ impl Motion<f64, N> for RigidMotion {
     #[inline]
     fn rate(&self, _: f64, y: &State) -> State {
         let sample = self.sample(y, false);
-        let model = &*self.model;
         let fall = self.planet.fall_mps2(position(y), velocity(y));
         let v = velocity(y);
         let (mut force, mut moment) = (sample.loads.force_n, sample.loads.moment_nm);
@@ -370,7 +395,7 @@ impl Motion<f64, N> for RigidMotion {
         }
         let a = sample.frame_from_body * (force / self.mass_kg) + fall;
         let w = rates(y);
-        let turn = model.inverse_inertia * (moment - w.cross(model.inertia_kgm2 * w));
+        let turn = self.inverse_inertia * (moment - w.cross(self.inertia_kgm2 * w));
         let [qw, qx, qy, qz] = Self::turning(y, sample.earth_rates);
         let across = self.across(sample.ned_mps);
         [v.x, v.y, v.z, qw, qx, qy, qz, across, a.x, a.y, a.z, turn.x, turn.y, turn.z]

@@ -1,4 +1,5 @@
-//! What coefficients, thrusts and DAVE-ML files may depend on: quantities of the flight, and the controls after them.
+//! What coefficients, thrusts and DAVE-ML files may depend on: quantities of the flight, after them the controls, then the
+//! model's own signals.
 //!
 //! All stand in one array of [`SLOTS`] numbers, so that a term is a few indices and no name is looked up in flight.
 
@@ -7,6 +8,9 @@ pub const SLOTS: usize = 96;
 
 /// Most controls of a model.
 pub const MOST_CONTROLS: usize = 32;
+
+/// Most signals of a model.
+pub const MOST_SIGNALS: usize = 24;
 
 /// A quantity of the flight; its number is its slot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,10 +38,13 @@ pub enum Quantity {
     DensityKgpm3,
     DynamicPressurePa,
     AglM,
+    AheadMps,
+    RightMps,
+    DownMps,
 }
 
-/// Number of [`Quantity`] slots; controls follow.
-pub const QUANTITIES: usize = 21;
+/// Number of [`Quantity`] slots; controls and signals follow.
+pub const QUANTITIES: usize = 24;
 
 /// Each quantity, its name in `M.toml`, and the names it has in AIAA S-119.
 pub const ALL: [(Quantity, &str, &[&str]); QUANTITIES] = [
@@ -62,6 +69,9 @@ pub const ALL: [(Quantity, &str, &[&str]); QUANTITIES] = [
     (Quantity::DensityKgpm3, "density_kgpm3", &["airDensity"]),
     (Quantity::DynamicPressurePa, "dynamic_pressure_Pa", &["dynamicPressure"]),
     (Quantity::AglM, "agl_m", &[]),
+    (Quantity::AheadMps, "ahead_mps", &[]),
+    (Quantity::RightMps, "right_mps", &[]),
+    (Quantity::DownMps, "down_mps", &[]),
 ];
 
 impl Quantity {
@@ -83,7 +93,7 @@ impl Quantity {
 }
 
 /// A unit that a control's name ends with, and how much of its SI unit it is.
-const SUFFIXES: [(&str, f64); 12] = [
+const SUFFIXES: [(&str, f64); 14] = [
     ("_rad", 1.0),
     ("_deg", std::f64::consts::PI / 180.0),
     ("_norm", 1.0),
@@ -96,6 +106,8 @@ const SUFFIXES: [(&str, f64); 12] = [
     ("_N", 1.0),
     ("_kg", 1.0),
     ("_s", 1.0),
+    ("_kgps", 1.0),
+    ("_Nm", 1.0),
 ];
 
 /// A name without its unit, and how much of the SI unit that unit is; `None` if it ends with no unit.
@@ -124,7 +136,7 @@ mod tests {
                 assert_eq!(Quantity::in_s119(&known.to_uppercase()), Some(*quantity));
             }
         }
-        const { assert!(QUANTITIES + MOST_CONTROLS < SLOTS) };
+        const { assert!(QUANTITIES + MOST_CONTROLS + MOST_SIGNALS < SLOTS) };
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::snapshot::StableId;
 use crate::weapons::ccip::{self, Leaving, NoSolution, Settings, Solution};
 use crate::weapons::score::{Aim, TallyRow};
 use crate::weapons::{Fuze, Weapon, WeaponKind};
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 
 /// Most stations of an owner.
@@ -64,10 +64,53 @@ pub struct StoresLoad {
     pub mass_kg: f64,
     /// Their common centre of gravity, metres from the owner's reference point, its body axes; zero without any.
     pub cg_m: DVec3,
+    /// Their inertia about it, each taken as a point, kg m2.
+    pub inertia_kgm2: DMat3,
     /// Sum of their drag areas, m2.
     pub drag_area_m2: f64,
 }
-coded!(StoresLoad { mass_kg, cg_m, drag_area_m2 });
+coded!(StoresLoad { mass_kg, cg_m, inertia_kgm2, drag_area_m2 });
+
+/// Inertia of a unit of mass at an arm.
+fn at_arm(arm_m: DVec3) -> DMat3 {
+    DMat3::from_diagonal(DVec3::splat(arm_m.length_squared()))
+        - DMat3::from_cols(arm_m * arm_m.x, arm_m * arm_m.y, arm_m * arm_m.z)
+}
+
+impl StoresLoad {
+    /// Of points: mass, place, drag area of each.
+    pub fn of(points: impl Iterator<Item = (f64, DVec3, f64)> + Clone) -> Self {
+        let mut load = points.clone().fold(Self::default(), |sum, (mass_kg, at_m, area_m2)| Self {
+            mass_kg: sum.mass_kg + mass_kg,
+            cg_m: sum.cg_m + at_m * mass_kg,
+            drag_area_m2: sum.drag_area_m2 + area_m2,
+            ..sum
+        });
+        if load.mass_kg > 0.0 {
+            load.cg_m /= load.mass_kg;
+        }
+        load.inertia_kgm2 = points.fold(DMat3::ZERO, |sum, (mass_kg, at_m, _)| sum + at_arm(at_m - load.cg_m) * mass_kg);
+        load
+    }
+
+    /// What they add to the inertia of a body of a mass and centre of gravity: their own, and that of both masses about
+    /// their common centre of gravity, which is that of the reduced mass at the arm between them (Steiner's theorem).
+    pub fn adds_kgm2(&self, body_kg: f64, body_cg_m: DVec3) -> DMat3 {
+        let reduced_kg = body_kg * self.mass_kg / (body_kg + self.mass_kg);
+        self.inertia_kgm2 + at_arm(self.cg_m - body_cg_m) * reduced_kg
+    }
+
+    /// Whether an inertia like this can be; what is restored is not believed.
+    pub(super) fn is_sound(&self) -> bool {
+        let inertia = self.inertia_kgm2;
+        let symmetric = inertia == inertia.transpose();
+        let [x, y, z] = [inertia.x_axis.x, inertia.y_axis.y, inertia.z_axis.z];
+        let positive = [x, y, z, y * x - inertia.x_axis.y.powi(2), z * x - inertia.x_axis.z.powi(2)];
+        // Points in a line have a determinant that rounds to either side of 0.
+        let slack = -1e-9 * (x + y + z).powi(2).max(1e-9);
+        symmetric && positive.into_iter().all(|minor| minor >= slack) && self.drag_area_m2 >= 0.0
+    }
+}
 
 /// A weapon on the page.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,19 +169,16 @@ impl Arms {
     }
 
     pub fn load(&self, catalogue: &Catalogue) -> StoresLoad {
-        let mut load = StoresLoad::default();
-        let mut moment = DVec3::ZERO;
-        for station in &self.stations {
+        StoresLoad::of(self.points(catalogue))
+    }
+
+    /// What hangs on each station: mass, place, drag area.
+    pub fn points<'a>(&'a self, catalogue: &'a Catalogue) -> impl Iterator<Item = (f64, DVec3, f64)> + Clone + 'a {
+        self.stations.iter().map(|station| {
             let weapon = &catalogue.weapons[station.weapon as usize].thing;
-            let mass_kg = weapon.carried_kg * f64::from(station.left);
-            load.mass_kg += mass_kg;
-            load.drag_area_m2 += weapon.carried_drag_area_m2 * f64::from(station.left);
-            moment += station.at_m * mass_kg;
-        }
-        if load.mass_kg > 0.0 {
-            load.cg_m = moment / load.mass_kg;
-        }
-        load
+            let left = f64::from(station.left);
+            (weapon.carried_kg * left, station.at_m, weapon.carried_drag_area_m2 * left)
+        })
     }
 
     /// What restored ones must be.

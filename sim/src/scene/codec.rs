@@ -4,7 +4,7 @@
 //! it was given could fill, and refuses a number that is not finite, since no state holds one.
 
 use crate::snapshot::StableId;
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 use std::fmt;
 
 /// Longest text, bytes: names of models, controls and failures.
@@ -261,6 +261,15 @@ impl Coded for DVec3 {
     }
     fn take(from: &mut Reader<'_>) -> Result<Self, SaveError> {
         from.take().map(Self::from_array)
+    }
+}
+
+impl Coded for DMat3 {
+    fn put(&self, out: &mut Vec<u8>) {
+        self.to_cols_array().put(out);
+    }
+    fn take(from: &mut Reader<'_>) -> Result<Self, SaveError> {
+        from.take().map(|columns| Self::from_cols_array(&columns))
     }
 }
 

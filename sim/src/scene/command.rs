@@ -162,6 +162,13 @@ pub enum Command {
         /// What it holds.
         holds: Option<Holds>,
     },
+    /// Drops what hangs on an owner's stations, whatever its master arm: bombs fall as duds, rockets go with their pods.
+    Jettison {
+        /// Whose.
+        owner: StableId,
+        /// The weapon's name; `None` is all bombs and rockets.
+        weapon: Option<String>,
+    },
     /// Ends all bursts of an owner.
     CeaseFire {
         /// Whose.
@@ -196,7 +203,7 @@ coded!(AircraftState {
 });
 
 /// The pilot's commands that change a scene, by their number in a save; the others concern the picture alone.
-const PILOT: [input::Command; 28] = [
+const PILOT: [input::Command; 29] = [
     input::Command::Pause,
     input::Command::Freeze,
     input::Command::Reset,
@@ -225,6 +232,7 @@ const PILOT: [input::Command; 28] = [
     input::Command::TriggerEnd,
     input::Command::AltimeterUp,
     input::Command::AltimeterDown,
+    input::Command::Jettison,
 ];
 
 impl Command {
@@ -300,6 +308,10 @@ impl Coded for Command {
             Self::Levers(levers) => (19u8, *levers).put(out),
             Self::FlyBody { id } => (20u8, *id).put(out),
             Self::Autopilot { id, holds } => (21u8, (*id, *holds)).put(out),
+            Self::Jettison { owner, weapon } => {
+                (22u8, *owner).put(out);
+                weapon.put(out);
+            }
         }
     }
 
@@ -308,7 +320,7 @@ impl Coded for Command {
             0 => {
                 let found = from.take::<u8>()?;
                 let command = PILOT.get(usize::from(found)).copied();
-                Self::Pilot(command.ok_or_else(|| from.refuse(format_args!("pilot: expected 0..=19, found {found}")))?)
+                Self::Pilot(command.ok_or_else(|| from.refuse(format_args!("pilot: expected 0..=26, found {found}")))?)
             }
             1 => Self::Controls(from.take()?),
             2 => Self::Place(Box::new(from.take()?)),
@@ -353,7 +365,8 @@ impl Coded for Command {
                 let (id, holds) = from.take()?;
                 Self::Autopilot { id, holds }
             }
-            found => return Err(from.refuse(format_args!("command: expected 0..=21, found {found}"))),
+            22 => Self::Jettison { owner: from.take()?, weapon: from.take()? },
+            found => return Err(from.refuse(format_args!("command: expected 0..=22, found {found}"))),
         })
     }
 }

@@ -43,6 +43,10 @@ impl Scene {
                 let now = RIPPLES.iter().position(|ripple| *ripple == arms.ripple).unwrap_or(0);
                 arms.ripple = RIPPLES[(now + 1) % RIPPLES.len()];
             }
+            input::Command::Jettison => {
+                // What is refused (too many in the air) leaves everything as it was; the page shows what is left.
+                let _ = self.order(Command::Jettison { owner, weapon: None });
+            }
             input::Command::Trigger => self.trigger(),
             input::Command::TriggerEnd if self.own_kind() == Some(WeaponKind::Gun) => {
                 // Ceasing needs nothing that could be missing.

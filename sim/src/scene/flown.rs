@@ -109,12 +109,24 @@ impl Scene {
 
     /// Makes a body the own aircraft; the own aircraft's id makes it the point mass again.
     pub(super) fn fly(&mut self, id: StableId) -> Result<(), Refused> {
+        let left = self.flown.take();
+        if let Some(left) = left.filter(|left| *left != id) {
+            self.weigh(left);
+        }
         if id == self.own_id {
-            self.flown = None;
             return Ok(());
         }
         let missing = || Refused::new(format_args!("id: expected a rigid body of the scene, found {}", id.0));
         let entity = found(&self.bodies, id).ok_or_else(missing)?;
+        self.flown = Some(id);
+        self.weigh(id);
+        if self.clock.step() == 0 {
+            self.command_flown(entity);
+            if let Ok(mut body) = self.ecs.get::<&mut Body>(entity) {
+                let model = self.catalogue.models[body.model as usize].thing.clone();
+                body.settle_controls(&model);
+            }
+        }
         let state = {
             let body = self.ecs.get::<&Body>(entity).map_err(|_| missing())?;
             let at = body.carriage(&self.surroundings.planet());
@@ -123,12 +135,53 @@ impl Scene {
             let (now, _) = seen(&body, &self.rigs[body.model as usize], &rest, self.controls.throttle, 1.0);
             AircraftState { load_factor: 1.0, ..now }
         };
-        self.flown = Some(id);
         (self.mode, self.track) = (Mode::Pilot, None);
         self.start = state;
         self.jumps = self.jumps.wrapping_add(1);
         self.set_aircraft(state);
         Ok(())
+    }
+
+    /// Trims the own body for level flight as it goes, with its fuel and its stores: pitch, elevator trim, throttle, the
+    /// mixture at best power; the pilot's controls and levers are set with it. To be asked before the first step.
+    ///
+    /// # Errors
+    /// [`Refused`] says that the own aircraft is no body, or what of the balance is missing; all is then as it was.
+    pub fn trim_flown(&mut self) -> Result<(), Refused> {
+        let none = || Refused::new("trim: expected an own aircraft that is a rigid body, found none");
+        let entity = self.flown.and_then(|id| found(&self.bodies, id)).ok_or_else(none)?;
+        let planet = self.surroundings.planet();
+        let (part, at) = {
+            let mut body = self.ecs.get::<&mut Body>(entity).map_err(|_| none())?;
+            let rig = &mut self.rigs[body.model as usize];
+            body.load(rig);
+            let (controls, angles_rad) = crate::handling::level_from(&mut rig.motion, &body.state).map_err(Refused::new)?;
+            let model = rig.motion.model.clone();
+            let at = body.carriage(&planet);
+            let turned = crate::frame::attitude(angles_rad);
+            body.relocate(at.position_m, at.velocity_mps, turned, DVec3::ZERO, &planet)?;
+            let part = move |stem: &str| {
+                crate::handling::control(&model, stem).map(|place| {
+                    let (of, value) = (&model.controls[place], controls[place]);
+                    if value < 0.0 { -value / of.min } else { value / of.max }
+                })
+            };
+            (part, AircraftState { attitude: turned, ..self.aircraft() })
+        };
+        self.controls.throttle = part("throttle").unwrap_or(self.controls.throttle);
+        self.levers.trim = part("elevator_trim").unwrap_or(0.0);
+        self.levers.mixture = part("mixture").unwrap_or(self.levers.mixture);
+        if part("elevator_trim").is_none() {
+            self.controls.pitch = part("elevator").unwrap_or(0.0);
+        }
+        self.set_aircraft(at);
+        self.command_flown(entity);
+        if let Ok(mut body) = self.ecs.get::<&mut Body>(entity) {
+            let rig = &mut self.rigs[body.model as usize];
+            body.settle_controls(&rig.motion.model.clone());
+            body.start_engine(rig);
+        }
+        self.fly(self.flown.unwrap_or(self.own_id))
     }
 
     /// The body that the pilot flies now.

@@ -290,6 +290,22 @@ impl Scene {
         Ok(id)
     }
 
+    /// The target of a kind, by its name, that stands nearest to the own aircraft.
+    ///
+    /// # Errors
+    /// [`Refused`] names the kind if the scene has no target of it.
+    pub fn nearest_target(&self, kind: &str) -> Result<StableId, Refused> {
+        let wanted = self.catalogue.kind(kind);
+        let from_m = self.aircraft().position_m;
+        let of = |&(id, entity): &(StableId, hecs::Entity)| {
+            let target = self.ecs.get::<&TargetState>(entity).ok()?;
+            (target.kind.is_some() && target.kind == wanted).then(|| (id, target.position_m.distance_squared(from_m)))
+        };
+        let nearest = self.targets.iter().filter_map(of).min_by(|(_, a), (_, b)| a.total_cmp(b));
+        let missing = || Refused::new(format_args!("target: expected a kind that stands in the scene, found {kind}"));
+        nearest.map(|(id, _)| id).ok_or_else(missing)
+    }
+
     fn enlist_targets(&mut self, targets: Vec<(StableId, TargetState)>) {
         for (id, target) in targets {
             let (shape, pose) = (self.catalogue.shapes[target.shape as usize].thing.clone(), target.pose());

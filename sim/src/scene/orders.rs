@@ -3,7 +3,7 @@
 //! Invariant others rely on: a command is checked whole before anything changes; what is refused changes nothing. If it
 //! had been scheduled, an event tells it, and it stands in the record.
 
-use super::arms::{Arms, Load, MOST_STATIONS, MOST_STORES_KG, Station};
+use super::arms::{Arms, Load, MOST_STATIONS, MOST_STORES_KG, Station, StoresLoad};
 use super::body::{Body, Rig};
 use super::codec::{Coded, Reader};
 use super::event::Happening;
@@ -16,13 +16,25 @@ use super::{Command, Refused, Scene, Stamped, attitude, found, place, speed};
 use crate::aircraft::AircraftState;
 use crate::rigid::Model;
 use crate::snapshot::StableId;
-use crate::weapons::Aim;
+use crate::weapons::{Aim, Fuze, WeaponKind};
 use glam::{DQuat, DVec2, DVec3};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// Most bursts at a time: guns of a scene that fire at once.
 const MOST_BURSTS: usize = 100_000;
+
+/// Between two bombs that are jettisoned, seconds.
+const JETTISON_S: f64 = 0.1;
+
+/// Rounds that leave one after the other.
+struct Lot {
+    rounds: u32,
+    together: u32,
+    interval_s: f64,
+    aim: Aim,
+    fuze: Fuze,
+}
 
 impl Scene {
     /// Does a command now, between two steps.
@@ -182,6 +194,7 @@ impl Scene {
             Command::Release { owner, weapon, rounds, together, interval_s, aim } => {
                 self.release(*owner, weapon, *rounds, *together, *interval_s, *aim)?;
             }
+            Command::Jettison { owner, weapon } => self.jettison(*owner, weapon.as_deref())?,
             Command::CeaseFire { owner } => self.bursts.retain(|burst| burst.owner != *owner),
         }
         Ok(())
@@ -225,8 +238,7 @@ impl Scene {
         interval_s: f64,
         aim: Aim,
     ) -> Result<(), Refused> {
-        let (name, weapon, projectile) = (weapon, self.catalogue.weapon(weapon)?, self.catalogue.projectile(weapon)?);
-        let of = self.catalogue.weapons[weapon as usize].thing.clone();
+        let of = self.catalogue.weapons[self.catalogue.weapon(weapon)? as usize].thing.clone();
         if let Aim::Place(at_m) = aim {
             place("release.aim", at_m)?;
         }
@@ -235,11 +247,22 @@ impl Scene {
         {
             return Err(Refused::new(format_args!("release.aim: expected a target of the scene, found {}", id.0)));
         }
+        let arms = self.arms_of(owner)?;
+        if !arms.master {
+            return Err(Refused::new("release: expected the master arm to be on, found it off"));
+        }
+        let fuze = arms.fuze.unwrap_or(of.fuze);
+        let interval_s = if interval_s == 0.0 { 60.0 / of.per_minute } else { interval_s };
+        self.let_go(owner, weapon, Lot { rounds, together, interval_s, aim, fuze })
+    }
+
+    /// Lets rounds go with a fuze, whatever the master arm.
+    fn let_go(&mut self, owner: StableId, name: &str, lot: Lot) -> Result<(), Refused> {
+        let (weapon, projectile) = (self.catalogue.weapon(name)?, self.catalogue.projectile(name)?);
+        let of = self.catalogue.weapons[weapon as usize].thing.clone();
+        let Lot { rounds, together, interval_s, aim, fuze } = lot;
         let at_m = {
             let arms = self.arms_of(owner)?;
-            if !arms.master {
-                return Err(Refused::new("release: expected the master arm to be on, found it off"));
-            }
             let none = || Refused::new(format_args!("release: expected a round of {name}, found none left"));
             arms.stations[arms.next(weapon).ok_or_else(none)?].at_m
         };
@@ -249,23 +272,55 @@ impl Scene {
         if self.bursts.len() >= MOST_BURSTS {
             return Err(Refused::new(format_args!("release: expected at most {MOST_BURSTS} bursts at a time")));
         }
-        let fuze = self.arms_of(owner)?.fuze.unwrap_or(of.fuze);
-        let interval_s = if interval_s == 0.0 { 60.0 / of.per_minute } else { interval_s };
         let load = Load { weapon, fuze, aim, way: DVec2::ZERO };
         let burst = Burst::new(owner, projectile, of.muzzle(at_m), rounds, of.per_minute, self.clock.time_s())?;
         self.bursts.push(burst.of_weapon(load, together, interval_s)?);
         Ok(())
     }
 
-    /// Lets a body feel what its stores weigh now.
+    fn jettison(&mut self, owner: StableId, weapon: Option<&str>) -> Result<(), Refused> {
+        let only = weapon.map(|name| self.catalogue.weapon(name)).transpose()?;
+        let kinds = self.arms_of(owner)?.kinds().into_iter().filter(|kind| only.is_none_or(|only| only == *kind));
+        for weapon in kinds {
+            let named = &self.catalogue.weapons[weapon as usize];
+            let (name, of) = (named.name.clone(), named.thing.clone());
+            match of.kind {
+                WeaponKind::Gun => {}
+                WeaponKind::Bomb => {
+                    let rounds = self.arms_of(owner)?.rounds(weapon).0;
+                    if rounds > 0 {
+                        let lot = Lot { rounds, together: 1, interval_s: JETTISON_S, aim: Aim::Nearest, fuze: Fuze::SAFE };
+                        self.let_go(owner, &name, lot)?;
+                    }
+                }
+                WeaponKind::Rocket => {
+                    // A pod is not followed to the ground: nothing of it bursts there.
+                    let stations = &mut self.arms_of(owner)?.stations;
+                    stations.iter_mut().filter(|one| one.weapon == weapon).for_each(|one| one.left = 0);
+                }
+            }
+        }
+        self.weigh(owner);
+        Ok(())
+    }
+
+    /// Lets a body feel what its stores are now: its own, and the own aircraft's if it is that.
     pub(super) fn weigh(&mut self, owner: StableId) {
-        let stores = self.stores_load(owner);
-        if let Some(entity) = found(&self.bodies, owner)
+        let is_own = owner == self.own_id || self.flown == Some(owner);
+        let carrier = if is_own { self.flown } else { Some(owner) };
+        let Some(id) = carrier else { return };
+        let carriers = [Some(id), is_own.then_some(self.own_id)];
+        let arms = carriers.iter().flatten().filter_map(|id| self.arms.get(id));
+        let stores = StoresLoad::of(arms.flat_map(|arms| arms.points(&self.catalogue)));
+        let planet = self.surroundings.planet();
+        if let Some(entity) = found(&self.bodies, id)
             && let Ok(mut body) = self.ecs.get::<&mut Body>(entity)
         {
-            body.stores = stores;
+            let model = self.catalogue.models[body.model as usize].thing.clone();
+            body.hang(stores, &model, &planet);
             body.look_anew();
         }
+        self.views.bodies.take();
     }
 
     fn reposition(

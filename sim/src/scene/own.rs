@@ -121,6 +121,7 @@ impl Scene {
             input::Command::MasterArm
             | input::Command::NextWeapon
             | input::Command::NextRipple
+            | input::Command::Jettison
             | input::Command::Trigger
             | input::Command::TriggerEnd => self.crew(command),
             input::Command::TimeForward => later(&mut self.clock, HOUR_S),

@@ -14,6 +14,7 @@ use super::gun::Carriage;
 use super::shell::{Fate, Range, Shell};
 use super::target::TargetState;
 use super::{Freeze, Scene, SceneGround, found};
+use crate::autopilot::Sight;
 use crate::ballistics::targets::Pose;
 use crate::snapshot::{Mode, StableId};
 use glam::{DVec2, DVec3};
@@ -50,12 +51,14 @@ impl Scene {
             match self.piloted() {
                 Some(body) => {
                     self.command_flown(body);
+                    self.lay_sights(ground);
                     self.step_bodies(ground, from_s, dt_s);
                     self.follow_flown(body, dt_s);
                 }
                 None => {
                     self.step_own(ground.height_at(), dt_s);
                     self.seat_flown();
+                    self.lay_sights(ground);
                     self.step_bodies(ground, from_s, dt_s);
                 }
             }
@@ -105,6 +108,30 @@ impl Scene {
             velocity_mps: target.velocity_mps,
             rates_radps: DVec3::ZERO,
         })
+    }
+
+    /// Shows each autopilot that holds an attack where its weapon would strike, and where its target is.
+    fn lay_sights(&mut self, ground: &SceneGround) {
+        for place in 0..self.bodies.len() {
+            let (id, entity) = self.bodies[place];
+            let held = self.ecs.get::<&Body>(entity).ok().and_then(|body| body.autopilot?.holds.attack);
+            let Some(target) = held else { continue };
+            let owner = if self.flown == Some(id) { self.own_id } else { id };
+            let sight = self.sight(owner, target, ground);
+            if let Ok(mut body) = self.ecs.get::<&mut Body>(entity) {
+                body.sight = sight;
+            }
+        }
+    }
+
+    /// An owner's aim at a target; without a place where its weapon would strike, that of its bore.
+    fn sight(&self, owner: StableId, target: StableId, ground: &SceneGround) -> Option<Sight> {
+        let target_m = self.ecs.get::<&TargetState>(found(&self.targets, target)?).ok()?.position_m;
+        let own = self.carriage(owner)?;
+        let bore = own.attitude * DVec3::X;
+        let along_bore = own.position_m + bore * own.position_m.distance(target_m);
+        let strikes_m = self.ccip(owner, ground).map_or(along_bore, |solution| solution.point_m);
+        Some(Sight { strikes_m, target_m })
     }
 
     fn step_bodies(&mut self, ground: &SceneGround, from_s: f64, dt_s: f64) {

@@ -1,14 +1,15 @@
 //! The own aircraft of a situation: which model, where it begins, what it carries.
 //!
-//! Without `aircraft` it is the point mass; else a rigid body, `trainer` (embedded) or a file beside the situation's. It
-//! begins in level flight at a place, or stands on a runway of the world's, `from_threshold_m` behind its threshold.
+//! Without `aircraft` it is the point mass; else a rigid body, an embedded one (`trainer`, `jet`, `hover`) or a file beside
+//! the situation's. It begins in level flight at a place, trimmed with what it carries and its gear up, or stands on a
+//! runway of the world's, `from_threshold_m` behind its threshold.
 
 use super::laid::Laid;
 use crate::aircraft::AircraftState;
 use crate::frame::{Angles, attitude};
 use crate::handling::runway::standing_height_m;
 use crate::input::Levers;
-use crate::rigid::Model;
+use crate::rigid::{Model, builtin};
 use crate::scene::{BodyStart, Catalogue, Command, Fuel, Refused, Scene};
 use crate::snapshot::StableId;
 use glam::{DVec2, DVec3};
@@ -18,8 +19,6 @@ use std::sync::Arc;
 use terrain::Geodetic;
 use terrain::store::World;
 
-/// The embedded aircraft.
-const TRAINER: &str = include_str!("../../../assets/aircraft/trainer.toml");
 /// Name of the own aircraft's model in the catalogue.
 const NAME: &str = "aircraft";
 
@@ -84,12 +83,8 @@ impl Own {
     /// Adds the model to a catalogue; `None` for the point mass.
     pub fn add_model(&self, file: &Path, catalogue: &mut Catalogue) -> Result<Option<Arc<Model>>, Refused> {
         let Some(name) = &self.aircraft else { return Ok(None) };
-        let model = if name == "trainer" {
-            Model::from_text(Path::new("trainer.toml"), TRAINER)
-        } else {
-            Model::read(&file.parent().unwrap_or(Path::new("")).join(name))
-        };
-        let model = model.map_err(Refused::new)?;
+        let beside = || Model::read(&file.parent().unwrap_or(Path::new("")).join(name));
+        let model = builtin::named(name).unwrap_or_else(beside).map_err(Refused::new)?;
         catalogue.add_model(NAME, model.clone())?;
         Ok(Some(Arc::new(model)))
     }
@@ -118,7 +113,9 @@ impl Own {
     pub fn seat(&self, scene: &mut Scene, start: &Start) -> Result<StableId, Refused> {
         let throttle = if self.throttle.is_finite() { self.throttle } else { 0.0 };
         scene.set_controls(crate::input::Controls { throttle, ..Default::default() });
-        scene.set_levers(Levers { parking_brake: f64::from(u8::from(self.parking_brake)), ..Levers::default() });
+        let down = |is_down: bool| f64::from(u8::from(is_down));
+        let (gear, parking_brake) = (down(self.aircraft.is_none() || start.runway.is_some()), down(self.parking_brake));
+        scene.set_levers(Levers { gear, parking_brake, ..Levers::default() });
         if self.aircraft.is_none() {
             return Ok(scene.own_id());
         }
@@ -141,6 +138,10 @@ impl Own {
         if self.select.is_some() {
             let arm = Command::Arm { owner, master: false, weapon: self.select.clone(), fuze: None };
             scene.order(arm).map_err(|why| ("select".to_owned(), why))?;
+        }
+        if self.aircraft.is_some() && self.runway.is_none() {
+            // A start that nothing can hold level is flown as it is given.
+            let _ = scene.trim_flown();
         }
         Ok(())
     }

@@ -2,7 +2,8 @@
 //!
 //! A step sets what it names and leaves the rest as it was. `hold` engages the autopilot of the own aircraft, which must
 //! then be a rigid body: an altitude above the sea or over the runway's level, a heading from true north or from the
-//! runway's course, a speed, the runway's line itself or one between two places; `fly = true` takes it out.
+//! runway's course, a speed, the runway's line itself or one between two places, the aim of the selected weapon at a target;
+//! `fly = true` takes it out.
 
 use super::laid::Laid;
 use super::own::Line;
@@ -23,6 +24,7 @@ pub(super) struct Step {
     throttle: Option<f64>,
     mixture: Option<f64>,
     flaps: Option<f64>,
+    gear: Option<f64>,
     brakes: Option<f64>,
     parking_brake: Option<f64>,
     trim: Option<f64>,
@@ -45,6 +47,8 @@ struct Hold {
     /// A line over the ground: latitude and longitude of two places on it.
     #[serde(default, deserialize_with = "crate::file::rows")]
     line: Vec<[f64; 2]>,
+    /// Kind of the target that the selected weapon is laid on: the nearest of it to the own aircraft's start that stands.
+    attack: Option<String>,
 }
 
 impl Step {
@@ -88,6 +92,7 @@ impl Step {
             (self.throttle, &mut controls.throttle),
             (self.mixture, &mut levers.mixture),
             (self.flaps, &mut levers.flaps),
+            (self.gear, &mut levers.gear),
             (self.parking_brake, &mut levers.parking_brake),
             (self.trim, &mut levers.trim),
         ];
@@ -95,6 +100,7 @@ impl Step {
             *value = given.unwrap_or(*value);
         }
         levers.brakes = self.brakes.map_or(levers.brakes, |brakes| [brakes; 2]);
+        let hold = self.hold.as_ref().map(|hold| hold.holds(scene, laid, runway)).transpose()?;
         let mut order = |command| scene.schedule(Stamped { step, command });
         if controls != controls_before {
             order(Command::Controls(controls.checked()))?;
@@ -102,8 +108,8 @@ impl Step {
         if levers != levers_before {
             order(Command::Levers(levers.checked()))?;
         }
-        if let Some(hold) = &self.hold {
-            order(Command::Autopilot { id: owner, holds: Some(hold.holds(laid, runway)?) })?;
+        if let Some(holds) = hold {
+            order(Command::Autopilot { id: owner, holds: Some(holds) })?;
         } else if self.fly {
             order(Command::Autopilot { id: owner, holds: None })?;
         }
@@ -115,7 +121,7 @@ impl Step {
 }
 
 impl Hold {
-    fn holds(&self, laid: &Laid<'_>, runway: Option<&Line>) -> Result<Holds, Refused> {
+    fn holds(&self, scene: &Scene, laid: &Laid<'_>, runway: Option<&Line>) -> Result<Holds, Refused> {
         let needs = |key: &str| Refused::new(format_args!("hold.{key}: expected an aircraft that began on a runway"));
         let line = |key: &str| runway.ok_or_else(|| needs(key));
         let altitude_m = match (self.altitude_m, self.over_runway_m) {
@@ -139,11 +145,12 @@ impl Hold {
                 return Err(Refused::new(format_args!("hold.line: expected two places, found {found}")));
             }
         };
-        let holds = Holds { altitude_m, heading_rad, speed_mps: self.speed_mps, track };
+        let attack = self.attack.as_ref().map(|kind| scene.nearest_target(kind)).transpose()?;
+        let holds = Holds { altitude_m, heading_rad, speed_mps: self.speed_mps, track, attack };
         if holds.is_sound() {
             Ok(holds)
         } else {
-            Err(Refused::new("hold: expected finite numbers, and no heading beside a runway's line"))
+            Err(Refused::new("hold: expected finite numbers, and one of a heading, a line and an attack"))
         }
     }
 }

@@ -60,6 +60,9 @@ impl Default for Fuze {
 }
 
 impl Fuze {
+    /// One that never arms.
+    pub const SAFE: Self = Self { trigger: Trigger::Impact, arming_s: MOST };
+
     /// What one must be.
     ///
     /// # Errors

@@ -20,6 +20,8 @@ const STOP: f64 = 10.0;
 const DAMPER_IN_M: f64 = 0.01;
 /// Sliding speed at which friction has come down from static to sliding, m/s.
 const STRIBECK_MPS: f64 = 0.1;
+/// Part of the way at which a wheel that retracts is down and locked.
+const DOWN: f64 = 0.99;
 /// Least cosine between a strut and the ground's normal.
 const LEAST_COSINE: f64 = 0.3;
 
@@ -90,6 +92,8 @@ pub struct Contact {
     pub grip_nspm: f64,
     /// Rolling, if it is a wheel.
     pub rolling: Option<Rolling>,
+    /// The control that lowers it, by place, if it retracts: it meets the ground only when that is all but down.
+    pub lowered_by: Option<usize>,
     /// Closing speed that it stands, m/s.
     pub breaks_mps: f64,
 }
@@ -146,6 +150,9 @@ impl Contact {
 
     /// The contact in the ground, `None` above it.
     pub fn press(&self, pose: &Pose, footing: &Footing, controls: &[f64], most_n: f64) -> Option<Press> {
+        if self.lowered_by.is_some_and(|place| controls[place] < DOWN) {
+            return None;
+        }
         let hub = pose.point_m(self.at_m);
         let normal = footing.normal;
         let over_m = (hub - footing.point_m).dot(normal);

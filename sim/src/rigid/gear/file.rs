@@ -30,6 +30,8 @@ pub(in crate::rigid) struct WheelFile {
     #[serde(default)]
     brakes: Vec<String>,
     steer: Option<SteerFile>,
+    /// The control that lowers it; without one it is always down.
+    lowered_by: Option<String>,
     breaks_mps: f64,
 }
 
@@ -86,6 +88,7 @@ pub(in crate::rigid) fn contacts(
             within(&key("steer.gain_rad"), steer.gain_rad, -1.6, 1.6)?;
             Ok::<_, String>(Steer { control: control(&key("steer"), &steer.control)?, gain_rad: steer.gain_rad })
         });
+        let lowered_by = wheel.lowered_by.as_ref().map(|name| control(&key("lowered_by"), name)).transpose()?;
         let grip_npm = within(&key("grip_Npm"), wheel.grip_Npm, 1.0, 1e9)?;
         let [fixed, sliding] = [wheel.static_friction, wheel.sliding_friction];
         all.push(Contact {
@@ -110,6 +113,7 @@ pub(in crate::rigid) fn contacts(
                 brakes: wheel.brakes.iter().map(place).collect::<Result<_, _>>()?,
                 steer: steer.transpose()?,
             }),
+            lowered_by,
             breaks_mps: within(&key("breaks_mps"), wheel.breaks_mps, 0.0, 100.0)?,
         });
     }
@@ -137,6 +141,7 @@ pub(in crate::rigid) fn contacts(
             grip_npm: spring_npm,
             grip_nspm: grip_nspm(spring_npm, mass_kg),
             rolling: None,
+            lowered_by: None,
             breaks_mps: within(&key("breaks_mps"), skid.breaks_mps, 0.0, 100.0)?,
         });
     }
