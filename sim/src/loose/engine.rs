@@ -24,8 +24,8 @@ use rapier3d::prelude::{
 const FRICTION: f64 = 0.8;
 /// How much of the closing speed a bounce gives back: drums and plates on soil, an estimate.
 const RESTITUTION: f64 = 0.1;
-/// Loss of turn a second: what rolls comes to rest on soil, an estimate.
-const ROLLING_PER_S: f64 = 0.8;
+/// Loss of turn a second, by air and soil, an estimate.
+const TURNING_PER_S: f64 = 0.4;
 /// Iterations of the solver a step, twice the engine's own, since none is carried over from the step before.
 const ITERATIONS: usize = 8;
 /// How deep things may lie in each other, metres.
@@ -75,7 +75,7 @@ pub(super) fn step(
                 .pose(at(piece.position_m, piece.attitude))
                 .linvel(piece.velocity_mps)
                 .angvel(piece.rates_radps)
-                .angular_damping(ROLLING_PER_S)
+                .angular_damping(TURNING_PER_S)
                 .can_sleep(false);
             world.insert(body, collider(piece.kind.collider()).mass(piece.kind.mass_kg())).0
         })

@@ -131,8 +131,14 @@ impl LooseKind {
         self == Self::Pole
     }
 
+    /// Radius that it rolls on, metres; `None` of what does not roll.
+    pub(super) fn rolls_on_m(self) -> Option<f64> {
+        let (form, half, _) = self.row();
+        (!matches!(form, Form::Block)).then_some(half[0])
+    }
+
     /// Its shape for the physics engine.
-    pub(super) fn collider(self) -> SharedShape {
+    pub fn collider(self) -> SharedShape {
         let (form, half, _) = self.row();
         match form {
             Form::Block => SharedShape::cuboid(half[0], half[1], half[2]),

@@ -148,7 +148,7 @@ impl Loose {
     }
 }
 
-/// Stands a thing on the ground as it was put, so far above it: upright, or flat on a slope.
+/// Stands a thing on the ground as it was put: upright, or flat on a slope. So far above the ground it is let go there.
 pub(crate) fn stand(piece: &mut Piece, ground: &SceneGround, over_m: f64) {
     let (x_m, z_m) = (piece.position_m.x, piece.position_m.z);
     let Some(ground_m) = ground.height_m(x_m, z_m) else { return };
@@ -159,4 +159,7 @@ pub(crate) fn stand(piece: &mut Piece, ground: &SceneGround, over_m: f64) {
     let level = DQuat::from_rotation_y((-forward.x).atan2(-forward.z));
     piece.attitude = (DQuat::from_rotation_arc(DVec3::Y, up) * level).normalize();
     piece.position_m = DVec3::new(x_m, ground_m + over_m, z_m) + up * piece.kind.half_m().y;
+    if over_m > 0.0 {
+        piece.wake();
+    }
 }

@@ -15,7 +15,7 @@ pub const MOST_RADPS: f64 = 90.0;
 /// Whether it moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Phase {
-    /// It stands as it was put, so far above the ground, metres.
+    /// It stands as it was put, so far above the ground, metres; above 0 until it is let go.
     Put(f64),
     /// It came to rest, over ground of this height, metres.
     Rests(f64),

@@ -29,6 +29,8 @@ const ROCK_MPS: f64 = 0.5;
 const ROCK_S: f64 = 6.0;
 /// Drag: `1/2 rho Cd` with air of 1.0 kg/m3 (1,500 to 2,000 m) and Cd = 1.1 of blunt things; an estimate, against still air.
 const DRAG_KGPM3: f64 = 0.55;
+/// Coefficient of rolling of drums and wheels on soil, an estimate: on slopes less than this they come to rest.
+const ROLLING: f64 = 0.15;
 /// Friction of what strikes the ground too fast for the engine.
 const SLIDE: f64 = 0.6;
 
@@ -170,10 +172,16 @@ fn land(piece: &mut Piece, before: &Piece, around: &Around<'_>, put_back: &mut u
         piece.position_m.y = ground_m + piece.kind.least_half_m();
         piece.velocity_mps.y = piece.velocity_mps.y.max(0.0);
     }
-    if piece.position_m.y - ground_m < piece.kind.radius_m() && ground.is_water(x_m, z_m) {
+    let radius_m = piece.kind.radius_m();
+    if piece.position_m.y - ground_m < radius_m && ground.is_water(x_m, z_m) {
         return Err(EndReason::Water);
     }
-    let radius_m = piece.kind.radius_m();
+    if let Some(round_m) = piece.kind.rolls_on_m().filter(|_| piece.position_m.y - ground_m < radius_m) {
+        // The moment `c m g r` against its own `m r^2 / 2`, about its axis.
+        let axis = piece.attitude * DVec3::Y;
+        let (spin, most) = (piece.rates_radps.dot(axis), 2.0 * ROLLING * around.gravity_mps2 / round_m * around.dt_s);
+        piece.rates_radps -= axis * spin.clamp(-most, most);
+    }
     let (speed_mps, turn_mps) = (piece.velocity_mps.length(), piece.rates_radps.length() * radius_m);
     let Phase::Moves(still_s) = piece.phase else { return Ok(()) };
     // Rocking counts for less, so that what never quite settles comes to rest, too.

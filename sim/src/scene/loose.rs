@@ -16,7 +16,7 @@ use super::{GroundTouch, Refused, Scene, SceneGround, attitude, found, place};
 use crate::aircraft::Condition;
 use crate::ballistics::shape::Shape;
 use crate::ballistics::targets::{Pose, Target};
-use crate::loose::{Around, Broken, LooseKind, MOST_LOOSE, Mover, PARTS_OF_AIRCRAFT, Phase, Piece, parts_of, stand};
+use crate::loose::{Around, Broken, LooseKind, MOST_LOOSE, Mover, PARTS_OF_AIRCRAFT, Phase, Piece, parts_of};
 use crate::random::Stream;
 use crate::rigid::Model;
 use crate::rigid::gear::Part;
@@ -43,14 +43,14 @@ pub struct LooseStart {
     pub kind: LooseKind,
     /// Plan position (x, z), metres.
     pub plan_m: DVec2,
-    /// Height of its foot over the ground, metres: 0 stands on it, above 0 on another thing.
+    /// Height of its foot over the ground, metres: at 0 it stands until something strikes it, above that it is let go.
     pub over_ground_m: f64,
     /// Which way it faces; it stands upright, or flat on a slope.
     pub attitude: DQuat,
 }
 
 impl Scene {
-    /// Puts a loose thing somewhere. It stands still until something strikes it.
+    /// Puts a loose thing somewhere.
     ///
     /// # Errors
     /// [`Refused`] if a number is none or there are too many.
@@ -260,6 +260,7 @@ fn rods(model: &Model) -> SharedShape {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::loose::stand;
 
     #[test]
     fn a_thing_that_is_put_stands_on_its_foot() {
