@@ -28,6 +28,7 @@ pub mod handling;
 pub mod input;
 pub mod integrate;
 pub mod limit;
+pub mod loose;
 pub mod planet;
 pub mod random;
 pub mod rigid;

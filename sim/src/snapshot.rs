@@ -77,6 +77,8 @@ pub struct Snapshot {
     pub projectiles: Arc<[EntityView]>,
     /// Targets, by id.
     pub targets: Arc<[EntityView]>,
+    /// What lies about, by id.
+    pub loose: Arc<[EntityView]>,
     /// The own aircraft's weapons; `None` without any. Follows from the rest, so it is no part of the hash.
     pub weapons: Option<Arc<WeaponPage>>,
     /// What happened of late, by number (see [`crate::scene::KEPT_S`]).
@@ -136,6 +138,7 @@ impl Snapshot {
             bodies: interpolated(&a.bodies, &b.bodies, t),
             projectiles: interpolated(&a.projectiles, &b.projectiles, t),
             targets: interpolated(&a.targets, &b.targets, t),
+            loose: interpolated(&a.loose, &b.loose, t),
             aircraft: AircraftState {
                 position_m: from.position_m.lerp(to.position_m, t),
                 velocity_mps: from.velocity_mps.lerp(to.velocity_mps, t),
@@ -188,7 +191,8 @@ impl Snapshot {
             | (self.flags.mode as u64) << 16
             | u64::from(self.jumps) << 32;
         let whole = [self.step, self.aircraft_id.0, self.date.unix_ns as u64, flags];
-        let entities = self.bodies.iter().chain(&*self.projectiles).chain(&*self.targets).flat_map(EntityView::words);
+        let entities = self.bodies.iter().chain(&*self.projectiles).chain(&*self.targets).chain(&*self.loose);
+        let entities = entities.flat_map(EntityView::words);
         let words = whole.into_iter().chain(floats.map(f64::to_bits));
         let words = words.chain([self.events_counted, self.events_chain]).chain(entities);
         words.fold(FNV_BASIS, |hash, word| fnv(hash, &word.to_le_bytes()))

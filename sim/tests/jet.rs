@@ -25,7 +25,8 @@ fn jet() -> Arc<Model> {
 /// One of NASA's files.
 fn nasa(file: &str) -> Option<Document> {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(F16).join(file);
-    let text = std::fs::read_to_string(&path).inspect_err(|error| println!("skipped: {}: {error}", path.display())).ok()?;
+    let text =
+        std::fs::read_to_string(&path).inspect_err(|error| println!("skipped: {}: {error}", path.display())).ok()?;
     Some(Document::parse(&text).unwrap())
 }
 

@@ -1,12 +1,13 @@
 //! From the entities of a simulated scene to the shapes that show them.
 //!
 //! Which shape stands for an entity is decided once a scene, by what its catalogue says of it ([`Cast`]). A body's or the
-//! own aircraft's position is its centre of gravity, a target's the middle of what shells strike; a shape's foot is on the
+//! own aircraft's position is its centre of gravity, a target's the middle of what shells strike, a loose thing's its own middle; a shape's foot is on the
 //! ground under its wheels: they are told apart here. Body axes (x forward, y right, z down) become a shape's (x right, y
 //! up, z backward).
 
 use glam::{DQuat, DVec3};
 use sim::Snapshot;
+use sim::loose::LooseKind;
 use sim::scene::{Catalogue, EntityView};
 use sim::weapons::{Damage, WeaponKind};
 use visual::models::things::{MODELS, Model};
@@ -28,6 +29,7 @@ pub struct Cast {
     bodies: Vec<Part>,
     projectiles: Vec<Part>,
     targets: Vec<Part>,
+    loose: Vec<Part>,
 }
 
 impl Cast {
@@ -51,6 +53,7 @@ impl Cast {
             bodies: catalogue.model_names().map(body).collect(),
             projectiles: catalogue.projectile_names().map(projectile).collect(),
             targets: catalogue.shape_names().enumerate().map(target).collect(),
+            loose: LooseKind::ALL.map(|kind| Some((model(kind.name())?, kind.half_m().y))).to_vec(),
         }
     }
 
@@ -69,6 +72,7 @@ impl Cast {
             .chain(cast(snapshot.bodies.iter().filter(seen), &self.bodies, in_body_axes))
             .chain(cast(snapshot.projectiles.iter(), &self.projectiles, in_body_axes))
             .chain(cast(snapshot.targets.iter(), &self.targets, |one| one.attitude))
+            .chain(cast(snapshot.loose.iter(), &self.loose, |one| one.attitude))
             .collect()
     }
 }
@@ -139,6 +143,20 @@ mod tests {
         }
         let shown: Vec<bool> = cast.projectiles.iter().map(Option::is_some).collect();
         assert_eq!(shown.iter().filter(|shown| **shown).count(), 4, "bombs and rockets, not rounds");
+    }
+
+    #[test]
+    fn loose_things_are_drawn_as_large_as_they_lie() {
+        let cast = Cast::of(&Catalogue::new());
+        for kind in LooseKind::ALL {
+            let (drawn, below_m) = cast.loose[kind.number() as usize].unwrap();
+            assert_eq!(drawn.name(), kind.name());
+            let (low, high) = drawn.mesh(0).bounds_m();
+            let (size, half) = ((high - low).as_dvec3(), kind.half_m());
+            // A polygon of 14 sides is narrower than its circle by 2.5 %; a bent plate is all but as thick as its box.
+            assert!((size - 2.0 * half).abs().max_element() < 0.03, "{kind:?}: {size}");
+            assert!((f64::from(high.y) - 2.0 * below_m).abs() < 0.01 && low.y.abs() < 1e-6, "{kind:?}");
+        }
     }
 
     #[test]

@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 use rapier3d::parry::math::Vector;
+use rapier3d::parry::shape::SharedShape;
 use rapier3d::parry::transformation::try_convex_hull;
 use std::fmt;
 use std::sync::Arc;
@@ -29,7 +30,7 @@ enum Form {
     Block { half_m: DVec3 },
     Capsule { half_height_m: f64, radius_m: f64 },
     Cylinder { half_height_m: f64, radius_m: f64 },
-    Hull { planes: Arc<[Plane]> },
+    Hull { planes: Arc<[Plane]>, corners: Arc<[DVec3]> },
 }
 
 /// The half-space `normal . point <= offset_m`, its normal of length 1.
@@ -165,12 +166,26 @@ impl Shape {
         if planes.len() < 4 || planes.iter().any(|plane| thinnest(plane) <= 1e-9 * radius_m) {
             return Err(flat());
         }
-        Ok(Self { form: Form::Hull { planes: planes.into() }, radius_m })
+        Ok(Self { form: Form::Hull { planes: planes.into(), corners: corners.into() }, radius_m })
     }
 
     /// Radius of the ball about the reference point that holds the shape, metres.
     pub fn radius_m(&self) -> f64 {
         self.radius_m
+    }
+
+    /// The same shape for the physics engine.
+    pub(crate) fn collider(&self) -> SharedShape {
+        match &self.form {
+            Form::Sphere { radius_m } => SharedShape::ball(*radius_m),
+            Form::Block { half_m } => SharedShape::cuboid(half_m.x, half_m.y, half_m.z),
+            Form::Capsule { half_height_m, radius_m } => SharedShape::capsule_y(*half_height_m, *radius_m),
+            Form::Cylinder { half_height_m, radius_m } => SharedShape::cylinder(*half_height_m, *radius_m),
+            // Corners that the engine made a hull of it makes one of again; were it not to, a ball stands for it.
+            Form::Hull { corners, .. } => {
+                SharedShape::convex_hull(corners).unwrap_or_else(|| SharedShape::ball(self.radius_m))
+            }
+        }
     }
 
     /// Signed distance of a point from the surface, metres, below 0 inside. Outside a hull it is the distance to the
@@ -187,7 +202,7 @@ impl Shape {
                 p.distance(DVec3::Y * p.y.clamp(-half_height_m, *half_height_m)) - radius_m
             }
             Form::Cylinder { half_height_m, radius_m } => rect(p.x.hypot(p.z) - radius_m, p.y.abs() - half_height_m),
-            Form::Hull { planes } => {
+            Form::Hull { planes, .. } => {
                 planes.iter().map(|plane| plane.normal.dot(p) - plane.offset_m).fold(f64::NEG_INFINITY, f64::max)
             }
         }
@@ -214,7 +229,7 @@ impl Shape {
                 let entries = parts.into_iter().flatten().filter_map(Stretch::entry);
                 return entries.reduce(|first, other| if other.fraction < first.fraction { other } else { first });
             }
-            Form::Hull { planes } => planes
+            Form::Hull { planes, .. } => planes
                 .iter()
                 .try_fold(Stretch::ALL, |inside, plane| inside.meet(line.behind(plane.normal, plane.offset_m)?)),
         };

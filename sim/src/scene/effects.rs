@@ -251,6 +251,7 @@ impl Scene {
             };
             self.log.add(one.time_s, happening);
         }
+        self.blow_loose(one.id, point_m, warhead.tnt_kg);
         if self.swept.is_empty() {
             return;
         }
@@ -300,6 +301,9 @@ impl Scene {
         self.views.targets.take();
         if let Some(state) = state {
             self.log.add(by.time_s, Happening::Damage { id, state, owner: by.owner, round: by.round });
+            if state == Damage::Destroyed {
+                self.shatter(id, by);
+            }
         }
         if let Some(column) = column {
             for (at, (_, entity)) in self.targets.iter().enumerate() {

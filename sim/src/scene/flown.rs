@@ -155,7 +155,8 @@ impl Scene {
             let mut body = self.ecs.get::<&mut Body>(entity).map_err(|_| none())?;
             let rig = &mut self.rigs[body.model as usize];
             body.load(rig);
-            let (controls, angles_rad) = crate::handling::level_from(&mut rig.motion, &body.state).map_err(Refused::new)?;
+            let (controls, angles_rad) =
+                crate::handling::level_from(&mut rig.motion, &body.state).map_err(Refused::new)?;
             let model = rig.motion.model.clone();
             let at = body.carriage(&planet);
             let turned = crate::frame::attitude(angles_rad);

@@ -113,6 +113,28 @@ impl SceneGround {
         self.cover.as_ref().is_some_and(|cover| Surface::of(cover.class_at(x_m, z_m)).is_water)
     }
 
+    /// Upward unit normal of the ground at a plan point; `None` over void.
+    pub(crate) fn normal(&self, x_m: f64, z_m: f64) -> Option<DVec3> {
+        match &self.area {
+            Some(area) => area.height_and_normal(x_m, z_m).map(|(_, normal)| normal),
+            None => self.height_m(x_m, z_m).map(|height_m| self.slope(DVec3::new(x_m, height_m, z_m))),
+        }
+    }
+
+    /// The posts that it is made of; `None` of a function.
+    pub(crate) fn area(&self) -> Option<&Area> {
+        self.area.as_ref()
+    }
+
+    /// Whether both have the very same heights, by where they are kept: two copies of the same heights are not.
+    pub(crate) fn is_same_surface(&self, other: &Self) -> bool {
+        match (&self.area, &other.area) {
+            (Some(one), Some(other)) => std::ptr::eq(one.field(), other.field()),
+            (None, None) => Arc::ptr_eq(&self.heights, &other.heights),
+            _ => false,
+        }
+    }
+
     /// No ground anywhere.
     pub fn void() -> Self {
         Self::heights(|_, _| None)

@@ -9,13 +9,14 @@
 //! | `arms.rs`, `effects.rs` | stations of an owner; what weapons do where they end |
 //! | `target.rs`, `route.rs`, `stance.rs` | targets, how they drive and stand |
 //! | `target_grid.rs` | which targets a path comes near |
+//! | `loose.rs` | what lies about ([`crate::loose`]): who pushes it, what becomes debris |
 //! | `ground.rs`, `surroundings.rs` | the ground; Earth, air, wind, seed |
 //! | `command.rs`, `orders.rs` | commands as data, and what they do |
 //! | `step.rs` | one fixed step of everything |
 //! | `event.rs`, `view.rs` | what a snapshot tells |
 //! | `catalogue.rs`, `codec.rs`, `save.rs` | what entities are made of; saving and restoring |
 //!
-//! Entities live in a hecs world; each has a [`StableId`], given in order of creation and never twice. All are stepped
+//! Entities live in a hecs world, loose things in a list of their own; each has a [`StableId`], given in order of creation and never twice. All are stepped
 //! in the order of their ids, so nothing depends on how hecs stores them. World frame (X east, Y up, Z south), SI;
 //! models and shells fly in north, east, down from the same origin ([`crate::frame`] turns one into the other).
 //!
@@ -35,6 +36,7 @@ mod failure;
 mod flown;
 mod ground;
 mod gun;
+mod loose;
 mod orders;
 mod own;
 mod route;
@@ -58,6 +60,7 @@ pub use failure::{Failure, Fuel, FuelChange, MOST_FAILURES};
 pub use flown::Instruments;
 pub use ground::{GroundTouch, LOOK_M, SceneGround};
 pub use gun::{MOST_PER_MINUTE, Muzzle};
+pub use loose::LooseStart;
 pub use route::{MOST_WAYPOINTS, SHORTEST_LEG_M};
 pub use stance::CONTACT_M;
 pub use surroundings::{MOST_WIND_MPS, Surroundings};
@@ -72,6 +75,7 @@ use crate::aircraft::{self, AircraftState, FARTHEST_M};
 use crate::ballistics::targets::Target;
 use crate::clock::{Clock, DEFAULT_STEP_HZ};
 use crate::input::{Controls, Levers};
+use crate::loose::Loose;
 use crate::rigid::gear::near;
 use crate::snapshot::{Mode, StableId};
 use crate::track::Track;
@@ -141,6 +145,8 @@ pub struct Scene {
     bodies: Roster,
     shells: Roster,
     targets: Roster,
+    /// What lies about.
+    loose: Loose,
     /// The equations of motion of each model of the catalogue.
     rigs: Vec<Rig>,
     /// Targets as a step sweeps them, in the order of `targets`.
@@ -232,6 +238,7 @@ impl Scene {
             bodies: Roster::new(),
             shells: Roster::new(),
             targets: Roster::new(),
+            loose: Loose::default(),
             rigs,
             swept: Vec::new(),
             swept_anew: false,

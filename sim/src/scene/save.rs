@@ -2,7 +2,7 @@
 //!
 //! Little-endian: the word `PLGSCENE`, a version, the catalogue's names and fingerprints, the state, and a checksum
 //! (FNV-1a of all before it). Everything that decides what comes next is in it: clock, aircraft, bodies with their
-//! turbulence and failures, shells, targets, bursts, numbers of rounds, commands that are not yet due. Wall time that is
+//! turbulence and failures, shells, targets, loose things, bursts, numbers of rounds, commands that are not yet due. Wall time that is
 //! owed or was lost is not, nor is the record of commands, which starts anew.
 //!
 //! Invariants others rely on: a restored scene goes on to the bit as the saved one does; hostile bytes are refused with
@@ -20,6 +20,7 @@ use super::{
 use crate::aircraft::AircraftState;
 use crate::clock::Clock;
 use crate::input::{Controls, Levers};
+use crate::loose::{Loose, MOST_LOOSE, Piece};
 use crate::snapshot::{Mode, StableId};
 use crate::utc::UtcTime;
 use crate::weapons::Tally;
@@ -56,6 +57,9 @@ impl Scene {
         self.put_all::<Body>(&self.bodies, &mut out);
         self.put_all::<Shell>(&self.shells, &mut out);
         self.put_all::<TargetState>(&self.targets, &mut out);
+        (self.loose.pieces().len() as u32).put(&mut out);
+        self.loose.pieces().iter().for_each(|piece| piece.put(&mut out));
+        self.loose.counts.put(&mut out);
         self.bursts.put(&mut out);
         self.fired.iter().map(|(owner, rounds)| (*owner, *rounds)).collect::<Vec<_>>().put(&mut out);
         self.arms.iter().map(|(owner, arms)| (*owner, arms.clone())).collect::<Vec<_>>().put(&mut out);
@@ -184,6 +188,16 @@ impl Scene {
             target.check().map_err(|why| from.refuse(why))?;
         }
         self.enlist_targets(targets);
+        let pieces = take_all::<Piece>(from, self.next_id, &mut used)?;
+        if pieces.len() > MOST_LOOSE || pieces.iter().any(|(_, piece)| !piece.is_sound()) {
+            return Err(
+                from.refuse(format_args!("loose: expected up to {MOST_LOOSE} things with numbers they can have"))
+            );
+        }
+        for (_, piece) in &pieces {
+            place("loose.position_m", piece.position_m).map_err(|why| from.refuse(why))?;
+        }
+        self.loose = Loose::of(pieces, from.take()?);
         used.sort_unstable();
         match used.windows(2).find(|pair| pair[0] == pair[1]) {
             Some(pair) => Err(from.refuse(format_args!("expected ids that are used once, found {} again", pair[0].0))),

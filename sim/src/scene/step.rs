@@ -1,6 +1,6 @@
 //! One fixed step of a scene.
 //!
-//! In this order: commands that are due; the own aircraft; bodies, targets and shells, each by id; the rounds that leave
+//! In this order: commands that are due; the own aircraft; bodies, targets, loose things and shells, each by id; the rounds that leave
 //! during the step, which fly what is left of it; then what those weapons do that ended in it. Owners are where they are at the moment that a round leaves; targets
 //! move during the step while shells are swept past them.
 //!
@@ -64,6 +64,7 @@ impl Scene {
             }
         }
         self.step_targets(ground, dt_s);
+        self.step_loose(ground, from_s, dt_s);
         self.step_shells(ground, &before, from_s, dt_s);
         self.look_down(ground);
     }
@@ -84,6 +85,7 @@ impl Scene {
             }
         }
         self.views.targets.take();
+        self.settle_loose(ground);
     }
 
     /// The pose of whoever may fire: the own aircraft, a body that flies, a target.
@@ -141,6 +143,7 @@ impl Scene {
         self.views.bodies.take();
         let carried = self.flown.filter(|_| self.mode != Mode::Pilot);
         let (step, freeze, log) = (self.clock.step() - 1, self.freeze, &mut self.log);
+        let mut crashed = Vec::new();
         let mut all = self.ecs.view_mut::<&mut Body>();
         for &(id, entity) in &self.bodies {
             // A body that is carried along with the own aircraft does not fly by itself.
@@ -158,8 +161,12 @@ impl Scene {
                     let (point_m, normal, velocity_mps) = (touch.point_m, touch.normal, touch.velocity_mps);
                     let crash = Happening::Crash { id, reason, point_m, normal, velocity_mps };
                     log.add(from_s + touch.fraction * dt_s, crash);
+                    crashed.push((id, touch));
                 }
             }
+        }
+        for (id, touch) in crashed {
+            self.strew(id, &touch);
         }
     }
 

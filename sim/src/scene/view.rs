@@ -25,6 +25,8 @@ pub enum EntityKind {
     Projectile,
     /// A target.
     Target,
+    /// What lies about: something that can be knocked over, or debris.
+    Loose,
 }
 
 /// An entity as others see it.
@@ -34,7 +36,7 @@ pub struct EntityView {
     pub id: StableId,
     /// What it is.
     pub kind: EntityKind,
-    /// Place of its model, projectile or shape in the catalogue.
+    /// Place of its model, projectile or shape in the catalogue; of a loose thing in [`crate::loose::LooseKind::ALL`].
     pub of: u32,
     /// Position, metres.
     pub position_m: DVec3,
@@ -60,6 +62,7 @@ pub(super) struct Views {
     pub bodies: OnceCell<Arc<[EntityView]>>,
     pub shells: OnceCell<Arc<[EntityView]>>,
     pub targets: OnceCell<Arc<[EntityView]>>,
+    pub loose: OnceCell<Arc<[EntityView]>>,
 }
 
 impl EntityView {
@@ -148,6 +151,7 @@ impl Scene {
             bodies: self.listed(&self.views.bodies, &self.bodies, Self::body_view),
             projectiles: self.listed(&self.views.shells, &self.shells, Self::shell_view),
             targets: self.listed(&self.views.targets, &self.targets, Self::target_view),
+            loose: self.loose_views(),
             weapons: self.page.clone(),
             events: self.recent_events(),
             events_counted: self.log.counted,

@@ -20,7 +20,8 @@ mod own;
 mod script;
 
 use crate::file::{self, FileError};
-use crate::scene::{Catalogue, Column, Height, Reaction, Refused, Scene, Surroundings, TargetStart};
+use crate::loose::{LooseKind, MOST_LOOSE};
+use crate::scene::{Catalogue, Column, Height, LooseStart, Reaction, Refused, Scene, Surroundings, TargetStart};
 use crate::utc::UtcTime;
 use crate::weapons::target_kind::StandOn;
 use crate::weapons::{TargetKind, builtin};
@@ -82,6 +83,8 @@ struct SituationFile {
     #[serde(default)]
     convoy: Vec<Convoy>,
     #[serde(default)]
+    loose: Vec<Lying>,
+    #[serde(default)]
     script: Vec<Step>,
     #[serde(default)]
     picture: Vec<Moment>,
@@ -108,6 +111,28 @@ struct Standing {
     /// Above the ground: a bridge's deck.
     #[serde(default)]
     over_ground_m: f64,
+}
+
+/// Loose things in a row to the right of the way that they face.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Lying {
+    kind: String,
+    lat_deg: f64,
+    lon_deg: f64,
+    #[serde(default)]
+    heading_deg: f64,
+    /// Of its foot; above 0 it is let go there, onto another.
+    #[serde(default)]
+    over_ground_m: f64,
+    #[serde(default = "one")]
+    count: u32,
+    #[serde(default)]
+    spacing_m: f64,
+}
+
+fn one() -> u32 {
+    1
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -254,6 +279,9 @@ impl Situation {
         for (at, convoy) in self.raw.convoy.iter().enumerate() {
             laid.drive(&mut scene, convoy, at as u32).map_err(|why| fail(&format!("convoy[{at}]"), &why))?;
         }
+        for (at, lying) in self.raw.loose.iter().enumerate() {
+            laid.lay(&mut scene, lying).map_err(|why| fail(&format!("loose[{at}]"), &why))?;
+        }
         own.arm(&mut scene).map_err(|(key, why)| fail(&format!("own.{key}"), &why))?;
         if scripted {
             for (at, step) in self.raw.script.iter().enumerate() {
@@ -277,6 +305,34 @@ impl Laid<'_> {
         let height = if on_water { Height::Msl(level_m) } else { Height::OverGround(target.over_ground_m) };
         let attitude = DQuat::from_rotation_y(-heading_rad);
         scene.add_target(&TargetStart { height, attitude, ..TargetStart::standing(&target.kind, plan_m) })?;
+        Ok(())
+    }
+
+    fn lay(&self, scene: &mut Scene, lying: &Lying) -> Result<(), Refused> {
+        let kind = LooseKind::named(&lying.kind).ok_or_else(|| {
+            let known = LooseKind::ALL.map(LooseKind::name).join(", ");
+            Refused::new(format_args!("kind: expected one of [{known}], found {}", lying.kind))
+        })?;
+        let (count, spacing_m) = (lying.count, lying.spacing_m);
+        if !(1..=MOST_LOOSE as u32).contains(&count) || !(0.0..=1_000.0).contains(&spacing_m) {
+            return Err(Refused::new(format_args!(
+                "count, spacing_m: expected 1..={MOST_LOOSE} and 0..=1000, found {count} and {spacing_m}"
+            )));
+        }
+        if !lying.heading_deg.is_finite() {
+            return Err(Refused::new(format_args!("heading_deg: expected degrees, found {}", lying.heading_deg)));
+        }
+        let (first_m, _) = self.place([lying.lat_deg, lying.lon_deg], false)?;
+        let heading_rad = lying.heading_deg.to_radians() - self.convergence_rad;
+        let right = DVec2::new(heading_rad.cos(), heading_rad.sin());
+        for number in 0..count {
+            scene.add_loose(&LooseStart {
+                kind,
+                plan_m: first_m + right * (f64::from(number) * spacing_m),
+                over_ground_m: lying.over_ground_m,
+                attitude: DQuat::from_rotation_y(-heading_rad),
+            })?;
+        }
         Ok(())
     }
 

@@ -23,15 +23,15 @@ use terrain::Area;
 const FEW: usize = 100;
 const MANY: usize = 10_000;
 /// Side of the square that they are spread over, metres.
-const SIDE_M: f64 = 30_000.0;
-const HZ: u32 = 120;
+pub(super) const SIDE_M: f64 = 30_000.0;
+pub(super) const HZ: u32 = 120;
 
 /// Which kinds are in a scene.
 #[derive(Clone, Copy)]
-struct Kinds {
-    bodies: bool,
-    shells: bool,
-    targets: bool,
+pub(super) struct Kinds {
+    pub bodies: bool,
+    pub shells: bool,
+    pub targets: bool,
 }
 
 const SCENES: [(&str, Kinds); 3] = [
@@ -89,11 +89,11 @@ impl Scenes {
     }
 }
 
-fn failed(error: impl std::fmt::Display) -> Failure {
+pub(super) fn failed(error: impl std::fmt::Display) -> Failure {
     Failure::while_doing("making a built-in scene", error)
 }
 
-fn catalogue() -> Result<Arc<Catalogue>, Failure> {
+pub(super) fn catalogue() -> Result<Arc<Catalogue>, Failure> {
     let mut all = Catalogue::new();
     all.add_model("light", Model::from_text(Path::new("light.toml"), LIGHT).map_err(failed)?).map_err(failed)?;
     let shell = "mass_kg = 0.36\ndiameter_m = 0.03\ndrag = \"G1\"\nform_factor = 1.0";
@@ -104,7 +104,12 @@ fn catalogue() -> Result<Arc<Catalogue>, Failure> {
 }
 
 /// A scene of `count` of each kind.
-fn scene(ground: &SceneGround, catalogue: &Arc<Catalogue>, kinds: Kinds, count: usize) -> Result<Scene, Failure> {
+pub(super) fn scene(
+    ground: &SceneGround,
+    catalogue: &Arc<Catalogue>,
+    kinds: Kinds,
+    count: usize,
+) -> Result<Scene, Failure> {
     let start = AircraftState::level(DVec3::new(0.0, 9_000.0, 0.0), 0.3, 180.0);
     let date = UtcTime::new(2026, 6, 21, 6, 0, 0).ok_or_else(|| failed("a date"))?;
     let around = Surroundings::over(0.74).map_err(failed)?;

@@ -5,10 +5,11 @@
 //! has an engine's inside, fuel, gear and a control system, and takes one evaluation a step where ours takes four. A shell's
 //! yardstick is JSBSim's bomb, and a point mass written out here. All take turns in every round.
 //!
-//! Scenes of many entities stand in [`entities`].
+//! Scenes of many entities stand in [`entities`], what lies about in [`loose`].
 
 mod entities;
 mod jsbsim;
+mod loose;
 mod shell;
 mod swept;
 
@@ -85,10 +86,12 @@ pub fn bench(area: &Area, load: Load) -> Result<Flown, Failure> {
     let mut yardstick = yardstick.map_err(|reason| Skipped { name: "flight beside JSBSim".into(), reason });
     let mut times = Times::default();
     let mut scenes = entities::Scenes::new(area)?;
+    let mut lying = loose::Lying::new(area)?;
     for round in 0..WARM_UPS + load.rounds {
         if round == WARM_UPS {
             times = Times::default();
             scenes.forget();
+            lying.forget();
             yardstick.iter_mut().for_each(|jsbsim| jsbsim.nothing_ns.clear());
         }
         if let Ok(jsbsim) = &mut yardstick {
@@ -114,9 +117,11 @@ pub fn bench(area: &Area, load: Load) -> Result<Flown, Failure> {
         times.swept.push(swept_ns);
         times.segment.push(segment_ns);
         scenes.round(load.scene_steps);
+        lying.round(load.scene_steps);
     }
     let mut told = told(&times, yardstick);
     told.results.extend(scenes.results());
+    told.results.extend(lying.results());
     Ok(told)
 }
 

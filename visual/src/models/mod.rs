@@ -8,6 +8,7 @@ mod aircraft;
 mod airfield;
 pub mod building;
 pub mod glb;
+mod loose;
 mod masts;
 mod mesh;
 mod parts;

@@ -5,7 +5,7 @@
 
 use super::mesh::Mesh;
 use super::parts::{CANVAS, CONCRETE, GREY, OLIVE, SHEET, STEEL, WHITE};
-use super::{aircraft, airfield, masts, vehicles};
+use super::{aircraft, airfield, loose, masts, vehicles};
 use glam::Vec3;
 use terrain::features::model::{MastClass, PlacedClass};
 use terrain::features::shape;
@@ -35,10 +35,19 @@ pub enum Model {
     ParkedAircraft,
     Bomb,
     Rocket,
+    Barrel,
+    Crate,
+    Cone,
+    Pole,
+    Plate,
+    Sheet,
+    Wheel,
+    Beam,
+    Lump,
 }
 
 /// Every model, in the order of their numbers.
-pub const MODELS: [Model; 21] = [
+pub const MODELS: [Model; 30] = [
     Model::Hangar,
     Model::ControlTower,
     Model::Terminal,
@@ -60,6 +69,15 @@ pub const MODELS: [Model; 21] = [
     Model::ParkedAircraft,
     Model::Bomb,
     Model::Rocket,
+    Model::Barrel,
+    Model::Crate,
+    Model::Cone,
+    Model::Pole,
+    Model::Plate,
+    Model::Sheet,
+    Model::Wheel,
+    Model::Beam,
+    Model::Lump,
 ];
 
 impl From<PlacedClass> for Model {
@@ -120,6 +138,15 @@ impl Model {
             Self::ParkedAircraft => "parked_aircraft",
             Self::Bomb => "bomb",
             Self::Rocket => "rocket",
+            Self::Barrel => "barrel",
+            Self::Crate => "crate",
+            Self::Cone => "cone",
+            Self::Pole => "pole",
+            Self::Plate => "plate",
+            Self::Sheet => "sheet",
+            Self::Wheel => "wheel",
+            Self::Beam => "beam",
+            Self::Lump => "lump",
         }
     }
 
@@ -174,6 +201,15 @@ impl Model {
             Self::ParkedAircraft => aircraft::jet(&mut mesh),
             Self::Bomb => aircraft::bomb(&mut mesh),
             Self::Rocket => aircraft::rocket(&mut mesh),
+            Self::Barrel => loose::barrel(&mut mesh),
+            Self::Crate => loose::crate_of_boards(&mut mesh),
+            Self::Cone => loose::cone(&mut mesh),
+            Self::Pole => loose::pole(&mut mesh),
+            Self::Plate => loose::plate(&mut mesh),
+            Self::Sheet => loose::sheet(&mut mesh),
+            Self::Wheel => loose::wheel_off(&mut mesh),
+            Self::Beam => loose::beam(&mut mesh),
+            Self::Lump => loose::lump(&mut mesh),
         }
         mesh
     }
@@ -226,6 +262,11 @@ mod tests {
                     let middle = if matches!(model, Model::Bomb | Model::Rocket) { 0.0 } else { half_m.y };
                     let off = (high.max(-low) - Vec3::new(half_m.x, half_m.y + middle, half_m.z)).abs();
                     assert!(off.x < 0.6 && off.y < 0.6 && off.z < 0.6, "{model:?} {low} {high}");
+                    continue;
+                }
+                if model >= Model::Barrel {
+                    // Compared with what the simulation lets lie by a test of the program.
+                    assert!(low.y.abs() < 1e-6 && (high - low).max_element() < 3.1, "{model:?} {low} {high}");
                     continue;
                 }
                 let Some(class) = model.placed() else {

@@ -165,7 +165,7 @@ fn a_hull_of_a_box_is_the_box() {
         .map(|i| half * DVec3::from_array([0, 1, 2].map(|axis| if i >> axis & 1 == 0 { -1.0 } else { 1.0 })))
         .collect();
     let (hull, block) = (Shape::hull(&corners).unwrap(), Shape::block(half).unwrap());
-    let Form::Hull { planes } = &hull.form else { panic!() };
+    let Form::Hull { planes, .. } = &hull.form else { panic!() };
     assert_eq!(planes.len(), 6);
     let mut random = StdRng::seed_from_u64(SEED_CASTS);
     for _ in 0..5_000 {
