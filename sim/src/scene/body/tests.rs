@@ -1,6 +1,9 @@
+//! Bodies in one scene's steps: rest and numbers that run away.
 
 use super::*;
+use crate::scene::{Freeze, SceneGround, Surroundings};
 use std::path::Path;
+use std::sync::Arc;
 
 fn rig(text: &str) -> Rig {
     let body = "[body]\nmass_kg = 10.0\ninertia_kgm2 = [[1.0, 0.0, 0.0], [0.0, 1.5, 0.0], [0.0, 0.0, 2.0]]\n";
