@@ -293,6 +293,9 @@ pub struct ModesArgs {
     /// Its speed, metres a second [default: 0.7 of the never-exceed speed].
     #[arg(long, value_name = "V", value_parser = values::speed_mps, allow_hyphen_values = true)]
     pub speed_mps: Option<f64>,
+    /// Folder for a plot of each test, modes.svg and modes.png.
+    #[arg(long, value_name = "DIR")]
+    pub plots: Option<PathBuf>,
 }
 
 /// `poligon trajectory`

@@ -16,7 +16,7 @@ use crate::rigid::motion::{self, State};
 use crate::rigid::quantity::Quantity;
 
 /// Step of the measurement, seconds.
-const DT_S: f64 = 0.005;
+pub const DT_S: f64 = 0.005;
 
 /// The modes of a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,14 +68,39 @@ impl Modes {
     }
 }
 
-/// Flies on with a control moved for a while; a row every step from when the control is back.
-fn pulsed<const N: usize>(
+/// What a trimmed flight does when controls are moved for a while and brought back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Response {
+    /// Which controls are moved.
+    pub name: &'static str,
+    /// What is looked at, with units.
+    pub signals: &'static [&'static str],
+    /// How far each was from trim, a row every [`DT_S`].
+    pub rows: Vec<Vec<f64>>,
+    /// From where on a linear system is fitted, seconds: the controls are back.
+    pub free_s: f64,
+}
+
+impl Response {
+    /// Rows of the free part.
+    fn free<const N: usize>(&self) -> Vec<[f64; N]> {
+        let from = (self.free_s / DT_S).round() as usize;
+        self.rows.iter().skip(from).map(|row| std::array::from_fn(|at| row.get(at).copied().unwrap_or(0.0))).collect()
+    }
+}
+
+/// A control, by how much it is moved, and until when, seconds.
+type Pulse = (usize, f64, f64);
+
+/// Flies on with controls moved for a while; the free part begins a while after the last is back.
+fn pulsed(
     held: &Held,
-    pulses: &[(usize, f64, f64)],
+    (name, signals): (&'static str, &'static [&'static str]),
+    pulses: &[Pulse],
     wait_s: f64,
     seconds: f64,
-    row: impl Fn(&Held) -> [f64; N],
-) -> Vec<[f64; N]> {
+    row: impl Fn(&Held) -> Vec<f64>,
+) -> Response {
     let mut now = held.clone();
     let first = row(&now);
     let last_s = pulses.iter().map(|pulse| pulse.2).fold(0.0, f64::max);
@@ -86,15 +111,12 @@ fn pulsed<const N: usize>(
         for &(place, by, until_s) in pulses {
             now.motion.controls[place] = held.motion.controls[place] + if t_s < until_s { by } else { 0.0 };
         }
-        if t_s >= last_s + wait_s {
-            let at = row(&now);
-            rows.push(std::array::from_fn(|i| at[i] - first[i]));
-        }
+        rows.push(row(&now).iter().zip(&first).map(|(at, first)| at - first).collect());
         let y = motion::normalised(integrate::rk4(t_s, &now.y, DT_S, |t, y: &State| now.motion.rate(t, y)));
         now.y = y;
         now.motion.turn_shaft(&y, DT_S);
     }
-    rows
+    Response { name, signals, rows, free_s: last_s + wait_s }
 }
 
 /// Part of a control's whole way.
@@ -103,33 +125,48 @@ fn share(held: &Held, place: usize, part: f64) -> f64 {
     part * 0.5 * (of.max - of.min)
 }
 
-/// Measures the modes of a trimmed flight.
+/// Flies the tests: short period, phugoid, and the lateral modes.
 ///
 /// # Errors
-/// A sentence: a control is missing, or a mode is not to be found.
-pub fn measure(held: &Held) -> Result<Modes, String> {
+/// A sentence: a control is missing.
+pub fn responses(held: &Held) -> Result<[Response; 3], String> {
     let model = &held.motion.model;
     let [elevator, aileron, rudder] = [needed(model, "elevator")?, needed(model, "aileron")?, needed(model, "rudder")?];
-    let slot = |now: &Held, quantity: Quantity| now.motion.sample(&now.y, true).slots[quantity.slot()];
-    let missing = |what: &str| format!("expected a {what}, found none in the response");
+    let slots = |now: &Held, of: &[Quantity]| -> Vec<f64> {
+        let sample = now.motion.sample(&now.y, true);
+        of.iter().map(|quantity| sample.slots[quantity.slot()]).collect()
+    };
 
     let nod = (elevator, share(held, elevator, 0.02), 0.25);
-    let fast = pulsed(held, &[nod], 0.0, 1.2, |now| [slot(now, Quantity::AlphaRad), slot(now, Quantity::QRadps)]);
-    let short = linear::modes(&fast, DT_S).and_then(|all| all.first().copied());
+    let signals: (_, &[_]) = ("a short pulse of the elevator", &["angle of attack, rad", "pitch rate, rad/s"]);
+    let fast = pulsed(held, signals, &[nod], 0.0, 1.2, |now| slots(now, &[Quantity::AlphaRad, Quantity::QRadps]));
 
     let push = (elevator, share(held, elevator, 0.02), 2.0);
     let climb = |now: &Held| {
         let velocity = motion::velocity(&now.y);
-        [velocity.length(), (-velocity.z).atan2(velocity.x.hypot(velocity.y))]
+        vec![velocity.length(), (-velocity.z).atan2(velocity.x.hypot(velocity.y))]
     };
-    let slow = pulsed(held, &[push], 8.0, 80.0, climb);
-    let phugoid = linear::modes(&slow, DT_S).and_then(|all| all.into_iter().find(|one| one.swing_radps > 0.0));
+    let signals: (_, &[_]) = ("a long pulse of the elevator", &["speed, m/s", "angle of climb, rad"]);
+    let slow = pulsed(held, signals, &[push], 8.0, 80.0, climb);
 
     let (kick, bank) = ((rudder, share(held, rudder, 0.05), 0.5), (aileron, share(held, aileron, 0.02), 0.25));
-    let aside = pulsed(held, &[kick, bank], 0.0, 12.0, |now| {
-        [Quantity::BetaRad, Quantity::PRadps, Quantity::RRadps, Quantity::RollRad].map(|quantity| slot(now, quantity))
-    });
-    let lateral = linear::modes(&aside, DT_S).unwrap_or_default();
+    let signals: (_, &[_]) =
+        ("pulses of rudder and aileron", &["sideslip, rad", "roll rate, rad/s", "yaw rate, rad/s", "bank, rad"]);
+    let of = [Quantity::BetaRad, Quantity::PRadps, Quantity::RRadps, Quantity::RollRad];
+    let aside = pulsed(held, signals, &[kick, bank], 0.0, 12.0, |now| slots(now, &of));
+    Ok([fast, slow, aside])
+}
+
+/// The modes that responses show.
+///
+/// # Errors
+/// A sentence: a mode is not to be found.
+pub fn found_in([fast, slow, aside]: &[Response; 3]) -> Result<Modes, String> {
+    let missing = |what: &str| format!("expected a {what}, found none in the response");
+    let short = linear::modes(&fast.free::<2>(), DT_S).and_then(|all| all.first().copied());
+    let phugoid =
+        linear::modes(&slow.free::<2>(), DT_S).and_then(|all| all.into_iter().find(|one| one.swing_radps > 0.0));
+    let lateral = linear::modes(&aside.free::<4>(), DT_S).unwrap_or_default();
     let swings: Vec<Mode> = lateral.iter().copied().filter(|one| one.swing_radps > 1e-6).collect();
     let straight: Vec<Mode> = lateral.iter().copied().filter(|one| one.swing_radps <= 1e-6).collect();
     Ok(Modes {
@@ -139,4 +176,12 @@ pub fn measure(held: &Held) -> Result<Modes, String> {
         roll: straight.first().copied().ok_or_else(|| missing("roll mode"))?,
         spiral: straight.get(1).copied().ok_or_else(|| missing("spiral"))?,
     })
+}
+
+/// Measures the modes of a trimmed flight.
+///
+/// # Errors
+/// A sentence: a control is missing, or a mode is not to be found.
+pub fn measure(held: &Held) -> Result<Modes, String> {
+    found_in(&responses(held)?)
 }

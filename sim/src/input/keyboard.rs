@@ -70,7 +70,7 @@ pub const DEFAULT_KEYS: &[(&str, KeyAction)] = &[
     ("F2", Do(Command::Wireframe)),
     ("F3", Do(Command::BlockOverlay)),
     ("KeyH", Do(Command::Hud)),
-    ("KeyO", Do(Command::MouseStick)),
+    ("F4", Do(Command::MouseStick)),
     ("KeyC", Do(Command::NextCamera)),
     ("F1", Do(Command::CockpitCamera)),
     ("BracketRight", Do(Command::TimeForward)),
