@@ -2,7 +2,7 @@
 
 mod firing_range;
 
-use firing_range::{arm, armed, catalogue, load, release, run};
+use firing_range::{arm, armed, brick, catalogue, load, release, run};
 use glam::{DQuat, DVec2, DVec3};
 use sim::loose::{LooseKind, MOST_LOOSE};
 use sim::scene::{Event, Happening, LooseStart, Scene, SceneGround, TargetStart};
@@ -78,12 +78,18 @@ fn a_struck_lorry_leaves_debris_that_comes_to_rest_on_the_ground_and_saves_go_on
 #[test]
 fn a_parked_lorry_does_not_creep_or_shake_on_a_slope_also_after_a_nudge() {
     let ground = slope(0.1);
-    let mut scene = under_fire(45.0);
+    let hurt = |event: &Event| matches!(event.what, Happening::Damage { state: Damage::Damaged, .. });
+    // The nearest pass whose bombs hurt it and do not destroy it; chances are the seed's.
+    let passes = (4..30).map(|pass| 3.0 * f64::from(pass));
+    let nudging = passes.filter(|aside_m| {
+        let events = run(&mut under_fire(*aside_m), &ground, 120 * 10).1;
+        events.iter().any(hurt) && destroyed(&events) == 0
+    });
+    let mut scene = under_fire(nudging.min_by(f64::total_cmp).unwrap());
     let pose = |scene: &Scene| (scene.snapshot().targets[0].position_m, scene.snapshot().targets[0].attitude);
-    run(&mut scene, &ground, 120 * 10);
+    let mut events = run(&mut scene, &ground, 1).1;
     let before = pose(&scene);
     let (mut creep_m, mut jitter_m, mut last) = (0.0f64, 0.0f64, before.0);
-    let mut events = Vec::new();
     for second in 0..600 {
         if (60..120).contains(&second) {
             // A drum falls on it every second for a minute.
@@ -95,7 +101,6 @@ fn a_parked_lorry_does_not_creep_or_shake_on_a_slope_also_after_a_nudge() {
         (creep_m, jitter_m) = (creep_m.max(now.distance(before.0)), jitter_m.max(now.distance(last)));
         last = now;
     }
-    let hurt = |event: &Event| matches!(event.what, Happening::Damage { state: Damage::Damaged, .. });
     let bursts = events.iter().filter(|event| matches!(event.what, Happening::Burst { .. })).count();
     assert_eq!((destroyed(&events), bursts, events.iter().any(hurt)), (0, 4, true), "hurt, not destroyed");
     let lain = scene.snapshot().loose.iter().filter(|view| view.position_m.distance(before.0) < 8.0).count();
@@ -127,6 +132,23 @@ fn a_driving_lorry_knocks_over_poles_on_its_way_and_keeps_its_way() {
     let standing = views.iter().filter(|view| upright(view) && view.of == LooseKind::Pole.number()).count();
     // Three stand 6 m aside.
     assert_eq!((views.len(), standing, with.loose_counts()[1]), (10, 3, 0), "{views:#?}");
+}
+
+#[test]
+fn a_body_knocks_over_what_it_flies_into_and_strews_debris_where_it_crashes() {
+    let ground = slope(0.0);
+    let mut scene = armed(DVec3::new(0.0, 3_000.0, 900.0), 150.0);
+    scene.add_body(&brick(DVec3::new(0.0, 500.9, 0.0))).unwrap();
+    for (x_m, z_m) in [(0.0, -10.0), (8.0, -10.0)] {
+        scene.add_loose(&put(LooseKind::Barrel, DVec2::new(x_m, z_m))).unwrap();
+    }
+    let (last, events) = run(&mut scene, &ground, 120 * 30);
+    assert!(events.iter().any(|event| matches!(event.what, Happening::Crash { .. })));
+    let (struck, beside) = (&last.loose[0], &last.loose[1]);
+    assert!(struck.position_m.z < -20.0 && beside.position_m.z == -10.0, "{struck:?} {beside:?}");
+    // Twelve parts, all at rest ahead of where it came down.
+    assert_eq!(scene.loose_counts(), [14, 0]);
+    assert!(last.loose[2..].iter().all(|view| view.position_m.z < -15.0), "{:#?}", last.loose);
 }
 
 #[test]

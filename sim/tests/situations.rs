@@ -80,6 +80,7 @@ fn a_script_flies_the_same_flight_each_time() {
 #[test]
 fn situations_that_are_none_are_refused_with_what_was_expected() {
     let circuit = BUILTIN.iter().find(|(name, _)| *name == "circuit").unwrap().1;
+    let lying = |what: &str| format!("{circuit}\n[[loose]]\nlat_deg = 42.6\nlon_deg = 76.7\n{what}\n");
     for (wrong, told) in [
         (circuit.replace("\"UCFL\"", "\"KJFK\""), "runway.airfield: expected one of ["),
         (circuit.replace("from_threshold_m = 60.0", "from_threshold_m = 6e4"), "runway.from_threshold_m: expected 0.."),
@@ -89,6 +90,10 @@ fn situations_that_are_none_are_refused_with_what_was_expected() {
         (circuit.replace("fly = true", "command = \"eject\""), "command: expected one of pause"),
         (circuit.replace("fly = true", "hold = { line = [[42.6, 76.7]] }"), "hold.line: expected two places, found 1"),
         (circuit.replace("fly = true", "warp = 9"), "warp"),
+        (lying("kind = 'barrow'"), "loose[0]: kind: expected one of [barrel, crate, cone,"),
+        (lying("kind = 'barrel'\ncount = 0"), "loose[0]: count, spacing_m: expected 1..=512"),
+        (lying("kind = 'barrel'\ncount = 400\nspacing_m = nan"), "expected"),
+        (lying("kind = 'barrel'\nover_ground_m = -2"), "loose.over_ground_m: expected 0..=1000, found -2"),
     ] {
         let found = Situation::from_text("circuit.toml".as_ref(), &wrong)
             .and_then(|of| of.scene(&WORLD, UtcTime { unix_ns: 0 }, 120, Default::default(), true).map(drop));

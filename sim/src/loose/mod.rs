@@ -44,6 +44,10 @@ use window::Windows;
 /// Most loose things of a scene. Where debris would be more, the oldest debris that rests goes first.
 pub const MOST_LOOSE: usize = 512;
 
+/// Ids of loose things count from here: no other entity's comes so far, and what lies about changes no other's id, so not
+/// the luck of a shot either.
+pub const FIRST_ID: u64 = 1 << 60;
+
 /// What happened to loose things so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
@@ -51,8 +55,10 @@ pub struct Counts {
     pub put_back: u64,
     /// Pieces of debris that went to make room.
     pub forgotten: u64,
+    /// Ids given.
+    pub named: u64,
 }
-coded!(Counts { put_back, forgotten });
+coded!(Counts { put_back, forgotten, named });
 
 /// Something with a course of its own that pushes, or stands in the way.
 #[derive(Debug, Clone)]
@@ -137,6 +143,15 @@ impl Loose {
         }
         self.pieces.push((id, piece));
         true
+    }
+
+    /// Adds one under the next id; `None` if there was no room for it.
+    pub fn put(&mut self, piece: Piece) -> Option<StableId> {
+        let id = StableId(FIRST_ID + self.counts.named);
+        self.add(id, piece).then(|| {
+            self.counts.named += 1;
+            id
+        })
     }
 
     /// Pushes all that a burst of so many kg of TNT reaches; what is random follows from the keys and each one's id.

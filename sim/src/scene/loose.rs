@@ -67,11 +67,8 @@ impl Scene {
             rates_radps: DVec3::ZERO,
             phase: Phase::Put(over_m),
         };
-        let id = StableId(self.next_id);
-        if !self.loose.add(id, piece) {
-            return Err(Refused::new(format_args!("loose: expected at most {MOST_LOOSE} things, found one more")));
-        }
-        self.next_id += 1;
+        let full = || Refused::new(format_args!("loose: expected at most {MOST_LOOSE} things, found one more"));
+        let id = self.loose.put(piece).ok_or_else(full)?;
         self.unsettled = true;
         self.views.loose.take();
         Ok(id)
@@ -187,12 +184,9 @@ impl Scene {
 
     fn throw(&mut self, broken: &Broken<'_>, mut stream: Stream) {
         for piece in broken.pieces(&mut stream) {
-            // Near the bounds of any world there is no place for it.
-            if piece.is_sound()
-                && place("debris", piece.position_m).is_ok()
-                && self.loose.add(StableId(self.next_id), piece)
-            {
-                self.next_id += 1;
+            // Near the bounds of any world there is no place for it, and what was put there is never taken away for it.
+            if piece.is_sound() && place("debris", piece.position_m).is_ok() {
+                self.loose.put(piece);
             }
         }
         self.views.loose.take();

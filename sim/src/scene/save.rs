@@ -20,7 +20,7 @@ use super::{
 use crate::aircraft::AircraftState;
 use crate::clock::Clock;
 use crate::input::{Controls, Levers};
-use crate::loose::{Loose, MOST_LOOSE, Piece};
+use crate::loose::{Counts, FIRST_ID, Loose, MOST_LOOSE, Piece};
 use crate::snapshot::{Mode, StableId};
 use crate::utc::UtcTime;
 use crate::weapons::Tally;
@@ -57,9 +57,7 @@ impl Scene {
         self.put_all::<Body>(&self.bodies, &mut out);
         self.put_all::<Shell>(&self.shells, &mut out);
         self.put_all::<TargetState>(&self.targets, &mut out);
-        (self.loose.pieces().len() as u32).put(&mut out);
-        self.loose.pieces().iter().for_each(|piece| piece.put(&mut out));
-        self.loose.counts.put(&mut out);
+        (self.loose.counts, self.loose.pieces().to_vec()).put(&mut out);
         self.bursts.put(&mut out);
         self.fired.iter().map(|(owner, rounds)| (*owner, *rounds)).collect::<Vec<_>>().put(&mut out);
         self.arms.iter().map(|(owner, arms)| (*owner, arms.clone())).collect::<Vec<_>>().put(&mut out);
@@ -188,8 +186,21 @@ impl Scene {
             target.check().map_err(|why| from.refuse(why))?;
         }
         self.enlist_targets(targets);
-        let pieces = take_all::<Piece>(from, self.next_id, &mut used)?;
-        if pieces.len() > MOST_LOOSE || pieces.iter().any(|(_, piece)| !piece.is_sound()) {
+        self.take_loose(from)?;
+        used.sort_unstable();
+        match used.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(from.refuse(format_args!("expected ids that are used once, found {} again", pair[0].0))),
+            None => Ok(()),
+        }
+    }
+
+    fn take_loose(&mut self, from: &mut Reader<'_>) -> Result<(), SaveError> {
+        let counts: Counts = from.take()?;
+        if [counts.named, counts.put_back, counts.forgotten].iter().any(|count| *count > MOST_COUNTED) {
+            return Err(from.refuse(format_args!("loose: expected counts of at most {MOST_COUNTED}")));
+        }
+        let pieces = take_all::<Piece>(from, FIRST_ID + counts.named, &mut Vec::new())?;
+        if pieces.len() > MOST_LOOSE || pieces.iter().any(|(id, piece)| id.0 < FIRST_ID || !piece.is_sound()) {
             return Err(
                 from.refuse(format_args!("loose: expected up to {MOST_LOOSE} things with numbers they can have"))
             );
@@ -197,12 +208,8 @@ impl Scene {
         for (_, piece) in &pieces {
             place("loose.position_m", piece.position_m).map_err(|why| from.refuse(why))?;
         }
-        self.loose = Loose::of(pieces, from.take()?);
-        used.sort_unstable();
-        match used.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(pair) => Err(from.refuse(format_args!("expected ids that are used once, found {} again", pair[0].0))),
-            None => Ok(()),
-        }
+        self.loose = Loose::of(pieces, counts);
+        Ok(())
     }
 
     fn take_rest(&mut self, from: &mut Reader<'_>) -> Result<(), SaveError> {
