@@ -7,7 +7,7 @@ use firing_range::{arm, armed, brick, load, release, run, scores};
 use glam::{DVec2, DVec3};
 use sim::aircraft::AircraftState;
 use sim::frame::{Angles, attitude};
-use sim::scene::{CONTACT_M, Command, Freeze, Happening, Height, Scene, SceneGround, TargetStart};
+use sim::scene::{CONTACT_M, Command, EndReason, Freeze, Happening, Height, Scene, SceneGround, TargetStart};
 use sim::situation::{BUILTIN, Situation};
 use sim::snapshot::StableId;
 
@@ -196,4 +196,49 @@ fn the_embedded_range_is_flown_on_the_embedded_world() {
         };
         assert!(told_of.contains(told), "{told}: {told_of}");
     }
+}
+
+#[test]
+fn a_body_that_flies_into_a_target_is_wrecked_there_and_one_that_passes_is_not() {
+    let ground: SceneGround =
+        Ground::new(Arc::new(synthetic::flat(Grid::centred(200.0, 4, 4).unwrap(), 0.0))).whole().into();
+    let fly = |aside_m: f64| {
+        let mut scene = armed(DVec3::new(0.0, 3_000.0, 2_000.0), 200.0);
+        scene.add_target(&TargetStart::standing("hangar", DVec2::new(0.0, -200.0))).unwrap();
+        let id = scene.add_body(&brick(DVec3::new(aside_m, 30.0, 0.0))).unwrap();
+        let (_, events) = run(&mut scene, &ground, 120 * 4);
+        let crash = events.iter().find_map(|event| match event.what {
+            Happening::Crash { id: of, reason, point_m, .. } if of == id => Some((reason, point_m)),
+            _ => None,
+        });
+        crash.expect("it comes down somewhere")
+    };
+    let (reason, point_m) = fly(0.0);
+    assert!(
+        reason == EndReason::Struck && point_m.y > 0.5 && (-230.0..-170.0).contains(&point_m.z),
+        "{reason:?} {point_m}"
+    );
+    assert_eq!(fly(60.0).0, EndReason::Ground);
+}
+
+#[test]
+fn a_bomb_dropped_too_low_takes_its_own_bomber_along_and_one_from_high_up_does_not() {
+    let ground: SceneGround =
+        Ground::new(Arc::new(synthetic::flat(Grid::centred(200.0, 4, 4).unwrap(), 0.0))).whole().into();
+    let survives = |height_m: f64| {
+        let mut scene = armed(DVec3::new(0.0, 3_000.0, 2_000.0), 200.0);
+        let id = scene.add_body(&brick(DVec3::new(0.0, height_m, 0.0))).unwrap();
+        scene.order(load(id, "mk82", 1, DVec3::ZERO)).unwrap();
+        scene.order(arm(id, "mk82", Some(Fuze { trigger: Trigger::Impact, arming_s: 0.0 }))).unwrap();
+        scene.order(release(id, "mk82", 1, 1, 0.0, Aim::Nearest)).unwrap();
+        let (_, events) = run(&mut scene, &ground, 120 * 40);
+        let burst = events.iter().position(|event| matches!(event.what, Happening::Burst { .. })).expect("a burst");
+        let wrecked = |event: &Event| matches!(event.what, Happening::Crash { reason: EndReason::Blast, .. });
+        let at = events.iter().position(wrecked);
+        assert!(at.is_none_or(|at| at > burst), "the burst first");
+        at.is_none()
+    };
+    // The curve's radius for what is light is 14 m: at 2 m it is certain but for one in 50.
+    assert!(!survives(2.0));
+    assert!(survives(1_500.0));
 }

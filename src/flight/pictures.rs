@@ -93,7 +93,7 @@ pub fn take(flown: Scenery, plan: &Plan, args: &FlyArgs, date: UtcTime) -> Resul
                 let at = (moment.at_s * hz).round() as u64;
                 while scene.clock.step() < at {
                     let snapshot = sim::lockstep(&mut scene, &ground, 1);
-                    album.effects.of(&snapshot);
+                    album.effects.of(&snapshot, &ground);
                     album.trace.add(&snapshot);
                     if let Some(other) = album.marks.leave(&snapshot, &mut album.scenery) {
                         ground = other;
@@ -138,7 +138,8 @@ impl Album<'_> {
     fn add(&mut self, snapshot: &Snapshot, name: &str) -> Result<(), Failure> {
         let size_px = self.scenery.look.size_px;
         let scenery = &mut self.scenery;
-        scenery.things.set_particles(self.effects.of(snapshot));
+        let emitters = self.effects.of(snapshot, &scenery.scene_ground());
+        scenery.things.set_particles(emitters);
         let seen = self.seat.view(scenery, snapshot, size_px);
         let world = scenery.world.clone();
         let heavens = self.sun.at(&world, snapshot.date);

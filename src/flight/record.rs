@@ -110,7 +110,7 @@ impl Record {
 
     /// Lets the scenery follow and writes down what that cost this thread.
     pub fn follow(&mut self, scenery: &mut Scenery, view: &View, snapshot: &Snapshot, heavens: Heavens) {
-        scenery.things.set_particles(self.effects.of(snapshot));
+        scenery.things.set_particles(self.effects.of(snapshot, &scenery.scene_ground()));
         let before = thread_time::spent();
         scenery.follow(view, stage::ground_speed_mps(snapshot), heavens);
         let spent = thread_time::spent().saturating_sub(before);

@@ -3,8 +3,9 @@
 //! Events stay in snapshots for half a second, a cloud of dust for longer: what began is remembered by its time, and shown
 //! as a function of the scene's time, so a pause holds it and a step back in time takes back what had not begun.
 
+use glam::DVec3;
 use sim::Snapshot;
-use sim::scene::{Event, Happening};
+use sim::scene::{EndReason, Event, Happening, SceneGround};
 use sim::snapshot::StableId;
 use std::collections::BTreeMap;
 use visual::particles::{Emitter, EmitterKind};
@@ -18,6 +19,8 @@ const TRACER_M: f32 = 0.08;
 /// Radius of the dust of a round on the ground, and of the spark of one on a thing, metres.
 const DUST_M: f32 = 0.8;
 const SPARK_M: f32 = 0.5;
+/// Half the width of the water that a round throws up, metres.
+const SPLASH_M: f32 = 0.7;
 /// Radius of a crash's burst, metres.
 const CRASH_M: f32 = 9.0;
 /// Radius of the fireball of a kilogram of TNT, metres; it grows with the cube root of the charge (B. Hopkinson 1915). A
@@ -37,13 +40,13 @@ pub struct Effects {
 }
 
 impl Effects {
-    /// What a snapshot shows.
-    pub fn of(&mut self, snapshot: &Snapshot) -> Vec<Emitter> {
+    /// What a snapshot shows over its ground.
+    pub fn of(&mut self, snapshot: &Snapshot, ground: &SceneGround) -> Vec<Emitter> {
         if snapshot.events_counted < self.taken {
             *self = Self::default();
         }
         for event in snapshot.events.iter().filter(|event| event.number >= self.taken) {
-            self.kept.extend(begun(event));
+            self.kept.extend(begun(event, ground));
         }
         self.taken = snapshot.events_counted;
         let now_s = snapshot.time_s;
@@ -72,37 +75,45 @@ impl Effects {
             let born_s = *self.burning.entry(target.id).or_insert(now_s);
             for kind in [EmitterKind::Fire, EmitterKind::Smoke] {
                 let position_m = target.position_m;
-                all.push(Emitter { kind, born_s, position_m, velocity_mps: glam::DVec3::ZERO, size_m: WRECK_M });
+                all.push(Emitter { kind, born_s, position_m, velocity_mps: DVec3::ZERO, size_m: WRECK_M });
             }
         }
     }
 }
 
-fn begun(event: &Event) -> Option<Emitter> {
+fn begun(event: &Event, ground: &SceneGround) -> Option<Emitter> {
+    let is_water = |at_m: &DVec3| ground.is_water(at_m.x, at_m.z);
     let (kind, position_m, size_m) = match &event.what {
         Happening::Impact(strike) if strike.target.is_some() || strike.object.is_some() => {
             (EmitterKind::Explosion, strike.point_m, SPARK_M)
         }
+        Happening::Impact(strike) if is_water(&strike.point_m) => (EmitterKind::Splash, strike.point_m, SPLASH_M),
         Happening::Impact(strike) => (EmitterKind::Dust, strike.point_m, DUST_M),
-        Happening::Burst { point_m, tnt_kg, buried, .. } => {
+        Happening::Burst { point_m, tnt_kg, buried, in_air, .. } => {
             let fireball_m = (FIREBALL_M * tnt_kg.max(0.0).cbrt()) as f32;
-            // A small burst in the ground is earth thrown up.
-            let kind = if *buried && *tnt_kg < 0.5 { EmitterKind::Dust } else { EmitterKind::Explosion };
+            let on_water = !in_air && is_water(point_m);
+            // A small burst in the ground is earth thrown up, one in water is water.
+            let kind = if on_water {
+                EmitterKind::Splash
+            } else if *buried && *tnt_kg < 0.5 {
+                EmitterKind::Dust
+            } else {
+                EmitterKind::Explosion
+            };
             (kind, *point_m, fireball_m.max(SPARK_M))
         }
+        Happening::Crash { point_m, reason: EndReason::Water, .. } => (EmitterKind::Splash, *point_m, CRASH_M),
         Happening::Crash { point_m, .. } => (EmitterKind::Explosion, *point_m, CRASH_M),
         _ => return None,
     };
-    Some(Emitter { kind, born_s: event.time_s, position_m, velocity_mps: glam::DVec3::ZERO, size_m })
+    Some(Emitter { kind, born_s: event.time_s, position_m, velocity_mps: DVec3::ZERO, size_m })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
     use sim::UtcTime;
     use sim::aircraft::AircraftState;
-    use sim::scene::EndReason;
 
     #[test]
     fn a_crash_smokes_longer_than_its_event_is_told_and_a_new_scene_forgets_it() {
@@ -118,15 +129,15 @@ mod tests {
         let mut struck = quiet.clone();
         struck.events = vec![Event { number: 0, time_s: 0.0, what: crash }].into();
         struck.events_counted = 1;
-        let mut effects = Effects::default();
-        assert!(effects.of(&quiet).is_empty());
-        assert_eq!(effects.of(&struck).len(), 1);
-        assert_eq!(effects.of(&struck).len(), 1, "an event is taken once");
+        let (mut effects, ground) = (Effects::default(), SceneGround::void());
+        assert!(effects.of(&quiet, &ground).is_empty());
+        assert_eq!(effects.of(&struck, &ground).len(), 1);
+        assert_eq!(effects.of(&struck, &ground).len(), 1, "an event is taken once");
         let mut later = struck.clone();
         (later.events, later.time_s) = (Vec::new().into(), 5.0);
-        assert_eq!(effects.of(&later)[0].kind, EmitterKind::Explosion);
+        assert_eq!(effects.of(&later, &ground)[0].kind, EmitterKind::Explosion);
         later.time_s = 20.0;
-        assert!(effects.of(&later).is_empty());
-        assert!(effects.of(&quiet).is_empty());
+        assert!(effects.of(&later, &ground).is_empty());
+        assert!(effects.of(&quiet, &ground).is_empty());
     }
 }

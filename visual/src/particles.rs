@@ -15,6 +15,7 @@ pub enum EmitterKind {
     MuzzleFlash,
     Explosion,
     Dust,
+    Splash,
     Smoke,
     Fire,
 }
@@ -60,6 +61,7 @@ fn life_s(kind: EmitterKind) -> f64 {
         EmitterKind::MuzzleFlash => 0.09,
         EmitterKind::Explosion => 9.0,
         EmitterKind::Dust => 4.0,
+        EmitterKind::Splash => 5.0,
         EmitterKind::Smoke | EmitterKind::Fire => f64::INFINITY,
     }
 }
@@ -86,6 +88,7 @@ impl Emitter {
             EmitterKind::MuzzleFlash => self.flash(age_s as f32, chance, sprites),
             EmitterKind::Explosion => self.explosion(age_s as f32, chance, sprites),
             EmitterKind::Dust => self.dust(age_s as f32, 1.0, chance, sprites),
+            EmitterKind::Splash => self.splash(age_s as f32, chance, sprites),
             EmitterKind::Smoke => self.column(age_s, chance, sprites),
             EmitterKind::Fire => self.fire(age_s, chance, sprites),
         }
@@ -192,6 +195,34 @@ impl Emitter {
         }
     }
 
+    /// Water thrown up, that falls back; its mist drifts a while.
+    fn splash(&self, age_s: f32, chance: Chance, sprites: &mut Vec<Sprite>) {
+        const GRAVITY_MPS2: f32 = 9.81;
+        let size_m = self.size_m;
+        // So fast that the highest drops rise five times the size.
+        let fast_mps = (2.0 * GRAVITY_MPS2 * 5.0 * size_m).sqrt();
+        for number in 0..30_u32 {
+            let up_mps = fast_mps * (0.35 + 0.65 * chance.at(number, 15));
+            let up_m = up_mps * age_s - 0.5 * GRAVITY_MPS2 * age_s * age_s;
+            if up_m < -0.2 * size_m {
+                continue;
+            }
+            let (sin, cos) = (TAU * chance.at(number, 16)).sin_cos();
+            let out_m = size_m * (0.15 + 0.6 * chance.at(number, 17)) * (1.0 - (-1.5 * age_s).exp());
+            let part = (age_s * GRAVITY_MPS2 / (2.0 * up_mps)).min(1.0);
+            let at = Vec3::new(cos * out_m, up_m, sin * out_m) + self.velocity_mps.as_vec3() * (0.4 * age_s);
+            sprites.push(Sprite {
+                position_m: self.position_m + at.as_dvec3(),
+                axis_m: Vec3::ZERO,
+                radius_m: size_m * (0.16 + 0.45 * part),
+                colour: Vec3::splat(0.78),
+                opacity: 0.7 * (1.0 - 0.8 * part) * (age_s / 0.04).min(1.0),
+                shines: 0.0,
+                seed: chance.hash(number, 18),
+            });
+        }
+    }
+
     /// A column: a puff every so often since it began.
     fn column(&self, age_s: f64, chance: Chance, sprites: &mut Vec<Sprite>) {
         const EVERY_S: f64 = 0.22;
@@ -290,6 +321,7 @@ mod tests {
         EmitterKind::MuzzleFlash,
         EmitterKind::Explosion,
         EmitterKind::Dust,
+        EmitterKind::Splash,
         EmitterKind::Smoke,
         EmitterKind::Fire,
     ];

@@ -9,8 +9,10 @@
 //! depends on the seed, the target and the projectile alone, so not on the order of anything.
 
 use super::arms::Load;
+use super::body::Body;
 use super::codec::coded;
-use super::event::{Happening, Strike};
+use super::event::{EndReason, Happening, Strike};
+use super::ground::GroundTouch;
 use super::shell::Shell;
 use super::target::TargetState;
 use super::{Refused, Scene, SceneGround, found, place};
@@ -22,7 +24,7 @@ use crate::weapons::armour::DAMAGED_FROM;
 use crate::weapons::crater::{changes_posts, crater, vented};
 use crate::weapons::penetration;
 use crate::weapons::score::{Aim, Outcome, Score, miss};
-use crate::weapons::{Damage, Trigger, Warhead, WeaponKind};
+use crate::weapons::{Armour, Damage, Trigger, Warhead, WeaponKind};
 use glam::DVec3;
 use terrain::features::index::ObjectId;
 
@@ -252,11 +254,12 @@ impl Scene {
             self.log.add(one.time_s, happening);
         }
         self.blow_loose(one.id, point_m, warhead.tnt_kg);
-        if self.swept.is_empty() {
-            return;
-        }
         let vented = height_m.map_or(1.0, |height_m| vented(warhead.tnt_kg, height_m));
         if vented <= 0.0 {
+            return;
+        }
+        self.hurt_bodies(one, point_m, warhead, vented);
+        if self.swept.is_empty() {
             return;
         }
         let reach_m = warhead.reach_m();
@@ -286,7 +289,43 @@ impl Scene {
         }
     }
 
-    fn armour_of(&self, target: StableId) -> Option<crate::weapons::Armour> {
+    /// Wrecks flying and standing bodies beside a burst, by the same curve as targets; every one counts as light, its centre of
+    /// gravity as all of it. The own aircraft of point mass is no body.
+    fn hurt_bodies(&mut self, one: &Ended, point_m: DVec3, warhead: &Warhead, vented: f64) {
+        let mut crashed = Vec::new();
+        for &(id, entity) in &self.bodies {
+            let Ok(mut body) = self.ecs.get::<&mut Body>(entity) else { continue };
+            let at = body.carriage(&self.surroundings.planet());
+            let away_m = at.position_m - point_m;
+            if body.ended.is_some() || away_m.length() > warhead.reach_m() {
+                continue;
+            }
+            let chance = Stream::new(&[self.surroundings.seed, id.0, one.id.0, KEY_DAMAGE]).uniform();
+            if chance >= warhead.kills(away_m.length() / vented, Armour::Light) {
+                continue;
+            }
+            let touch = GroundTouch {
+                fraction: 0.0,
+                point_m: at.position_m,
+                normal: DVec3::ZERO,
+                velocity_mps: at.velocity_mps,
+                object: None,
+            };
+            body.wreck(EndReason::Blast, touch);
+            let (normal, velocity_mps) = (touch.normal, touch.velocity_mps);
+            let crash = Happening::Crash { id, reason: EndReason::Blast, point_m: touch.point_m, normal, velocity_mps };
+            self.log.add(one.time_s, crash);
+            crashed.push((id, touch));
+        }
+        if !crashed.is_empty() {
+            self.views.bodies.take();
+        }
+        for (id, touch) in crashed {
+            self.strew(id, &touch);
+        }
+    }
+
+    fn armour_of(&self, target: StableId) -> Option<Armour> {
         let target = self.ecs.get::<&TargetState>(found(&self.targets, target)?).ok()?;
         target.kind.map(|kind| self.catalogue.kinds[kind as usize].thing.armour)
     }

@@ -42,6 +42,10 @@ pub enum EndReason {
     Propeller,
     /// It met water.
     Water,
+    /// A part of it struck a building, a mast or a target.
+    Struck,
+    /// A warhead burst beside it.
+    Blast,
 }
 coded_choice!(EndReason {
     Ground,
@@ -54,7 +58,9 @@ coded_choice!(EndReason {
     WingTip,
     Tail,
     Propeller,
-    Water
+    Water,
+    Struck,
+    Blast
 });
 
 impl EndReason {
@@ -72,6 +78,8 @@ impl EndReason {
             Self::Tail => "the tail struck the ground",
             Self::Propeller => "the propeller struck the ground",
             Self::Water => "came down on water",
+            Self::Struck => "struck a building, a mast or a vehicle",
+            Self::Blast => "a warhead burst beside it",
         }
     }
 }

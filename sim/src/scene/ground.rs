@@ -187,6 +187,16 @@ impl SceneGround {
         }
     }
 
+    /// Whether anything stands on it.
+    pub(super) fn has_things(&self) -> bool {
+        self.objects.is_some()
+    }
+
+    /// The first point of a path on a thing that stands on the ground.
+    pub(super) fn touch_thing(&self, path: &StepPath) -> Option<GroundTouch> {
+        self.objects.as_ref().and_then(|objects| object_impact(path, objects)).map(|impact| touched(&impact))
+    }
+
     /// `false` only if a path meets neither the ground nor a thing, or no deeper than its own bend; cheaper than a sweep,
     /// as it asks about one segment: the chord lowered by twice the bend.
     pub fn may_touch(&self, path: &StepPath) -> bool {

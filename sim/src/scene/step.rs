@@ -7,9 +7,10 @@
 //! Invariant others rely on: the cost of an entity does not depend on how many others there are, and no entity costs an
 //! allocation a step; only what strikes, fires or fails may, and the page of an own aircraft that carries weapons.
 
+use super::body::parts::struck;
 use super::body::{Body, Outcome};
 use super::effects::Ended;
-use super::event::Happening;
+use super::event::{EndReason, Happening};
 use super::gun::Carriage;
 use super::shell::{Fate, Range, Shell};
 use super::target::TargetState;
@@ -154,7 +155,15 @@ impl Scene {
             if !body.failures.is_empty() {
                 body.set_in(step, |name| log.add(from_s, Happening::Failure { id, name: name.to_owned() }));
             }
-            match body.step(&mut self.rigs[body.model as usize], ground, freeze, dt_s) {
+            let (from, rig) = (body.state, &mut self.rigs[body.model as usize]);
+            let mut outcome = body.step(rig, ground, freeze, dt_s);
+            if outcome == Outcome::Flies {
+                let motion = &rig.motion;
+                let about = (&self.swept[..], &self.grid);
+                let touch = struck(&motion.model, motion.cg_m, [&from, &body.state], dt_s, ground, about);
+                outcome = touch.map_or(outcome, |touch| body.wreck(EndReason::Struck, touch));
+            }
+            match outcome {
                 Outcome::Flies => {}
                 Outcome::OutOfFuel => log.add(from_s + dt_s, Happening::OutOfFuel { id }),
                 Outcome::Ended(reason, touch) => {

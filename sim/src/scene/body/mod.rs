@@ -11,6 +11,7 @@
 //! | `helm.rs` | what moves its controls: failures, their pace, an autopilot |
 //! | `loads.rs` | its mass, fuel and stores in the equations of motion |
 //! | `step.rs` | one step |
+//! | `parts.rs` | what its parts strike beside the ground |
 //! | `ending.rs` | how a flight ends |
 //!
 //! Invariants others rely on: a state is finite and its quaternion of length 1; a step allocates nothing.
@@ -18,6 +19,7 @@
 mod ending;
 mod helm;
 mod loads;
+pub(super) mod parts;
 mod start;
 mod step;
 
