@@ -63,7 +63,7 @@ fn another_catalogue_version_or_file_is_refused_by_name() {
     assert!(refused(&bytes[..bytes.len() - 1]).contains("expected the checksum"));
     let mut newer = bytes.clone();
     newer[8] = 9;
-    assert!(refused(&newer).contains("expected version 3, found 9"));
+    assert!(refused(&newer).contains("expected version 4, found 9"));
     let mut longer = bytes.clone();
     longer.splice(bytes.len() - 8..bytes.len() - 8, [0; 3]);
     assert!(refused(&sealed(longer)).contains("expected the end, found 3 bytes more"));

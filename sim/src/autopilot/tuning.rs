@@ -56,7 +56,8 @@ impl Tuning {
             ("climb_mps", self.climb_mps, 1e3),
             ("bank_rad", self.bank_rad, 1.4),
         ];
-        if let Some((key, found, most)) = positive.into_iter().find(|(_, value, most)| !(*value > 0.0 && value <= most)) {
+        if let Some((key, found, most)) = positive.into_iter().find(|(_, value, most)| !(*value > 0.0 && value <= most))
+        {
             return Err(format!("autopilot.{key}: expected a number above 0, at most {most}, found {found}"));
         }
         if !(0.0..100.0).contains(&self.pitch_damping_s) {

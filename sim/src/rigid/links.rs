@@ -91,12 +91,7 @@ impl Links {
     ///
     /// # Errors
     /// [`FileError`] names the file and the variable: no value for an input, an unknown name or unit, a cycle of files.
-    pub fn bind(
-        sources: &[Source],
-        controls: &[Control],
-        signals: usize,
-        found: &[Found],
-    ) -> Result<Self, FileError> {
+    pub fn bind(sources: &[Source], controls: &[Control], signals: usize, found: &[Found]) -> Result<Self, FileError> {
         let mut origins = Vec::new();
         for (index, source) in sources.iter().enumerate() {
             check_names(source)?;

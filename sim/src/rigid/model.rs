@@ -17,8 +17,8 @@ use super::model_checks::{
 use super::model_file::{AxesFile, ModelFile};
 use super::power::file::power_plant;
 use super::power::shaft::PowerPlant;
-use super::signal::{Signal, signals, tables_and_signals};
 use super::quantity::{QUANTITIES, Quantity, SLOTS, without_unit};
+use super::signal::{Signal, signals, tables_and_signals};
 use crate::autopilot::Tuning;
 use crate::case::Setting;
 use crate::daveml::si_factor;

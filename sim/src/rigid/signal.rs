@@ -41,7 +41,9 @@ pub(super) fn signals(file: &ModelFile, controls: &[Control], tables: &[String])
             return Err(format!("{key}.name: expected one that ends in a unit: {}, found {name}", unit_names()));
         }
         if Quantity::named(name).is_some() || names.contains(name) {
-            return Err(format!("{key}.name: expected another name than a quantity, a control or a signal, found {name}"));
+            return Err(format!(
+                "{key}.name: expected another name than a quantity, a control or a signal, found {name}"
+            ));
         }
         let (min, max) = (signal.min, signal.max);
         if !(min < max) {
@@ -54,11 +56,20 @@ pub(super) fn signals(file: &ModelFile, controls: &[Control], tables: &[String])
                 // A table over a signal is not known yet when signals are made.
                 let over = file.table.get(asked).and_then(|table| table.axes.iter().find(|axis| later(axis)));
                 if let Some(axis) = over {
-                    return Err(format!("{key}: expected a table without the signal {axis} in its axes, found {asked}"));
+                    return Err(format!(
+                        "{key}: expected a table without the signal {axis} in its axes, found {asked}"
+                    ));
                 }
             }
             let value = term.value.unwrap_or(1.0);
-            terms.push(factors(&key, value, [term.table.as_ref(), term.and_table.as_ref()], &term.times, &names, tables)?);
+            terms.push(factors(
+                &key,
+                value,
+                [term.table.as_ref(), term.and_table.as_ref()],
+                &term.times,
+                &names,
+                tables,
+            )?);
         }
         names.push(name.clone());
         debug_assert_eq!(slot(name, &names), Some(first + i));

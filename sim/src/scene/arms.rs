@@ -89,7 +89,8 @@ impl StoresLoad {
         if load.mass_kg > 0.0 {
             load.cg_m /= load.mass_kg;
         }
-        load.inertia_kgm2 = points.fold(DMat3::ZERO, |sum, (mass_kg, at_m, _)| sum + at_arm(at_m - load.cg_m) * mass_kg);
+        load.inertia_kgm2 =
+            points.fold(DMat3::ZERO, |sum, (mass_kg, at_m, _)| sum + at_arm(at_m - load.cg_m) * mass_kg);
         load
     }
 

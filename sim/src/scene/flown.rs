@@ -155,7 +155,8 @@ impl Scene {
             let mut body = self.ecs.get::<&mut Body>(entity).map_err(|_| none())?;
             let rig = &mut self.rigs[body.model as usize];
             body.load(rig);
-            let (controls, angles_rad) = crate::handling::level_from(&mut rig.motion, &body.state).map_err(Refused::new)?;
+            let (controls, angles_rad) =
+                crate::handling::level_from(&mut rig.motion, &body.state).map_err(Refused::new)?;
             let model = rig.motion.model.clone();
             let at = body.carriage(&planet);
             let turned = crate::frame::attitude(angles_rad);
@@ -214,6 +215,16 @@ impl Scene {
         };
         self.side_g = side_g;
         self.set_aircraft(state);
+    }
+
+    /// Puts the own aircraft where the body's centre of gravity went between two steps.
+    pub(super) fn join_flown(&mut self) {
+        let Some(entity) = self.flown.and_then(|id| found(&self.bodies, id)) else { return };
+        let at = self.ecs.get::<&Body>(entity).map(|body| body.carriage(&self.surroundings.planet()));
+        if let Ok(at) = at {
+            let own = self.aircraft();
+            self.set_aircraft(AircraftState { position_m: at.position_m, velocity_mps: at.velocity_mps, ..own });
+        }
     }
 
     /// Puts the body where the own aircraft was put, whole and with its engine running.

@@ -289,7 +289,8 @@ impl Scene {
                 WeaponKind::Bomb => {
                     let rounds = self.arms_of(owner)?.rounds(weapon).0;
                     if rounds > 0 {
-                        let lot = Lot { rounds, together: 1, interval_s: JETTISON_S, aim: Aim::Nearest, fuze: Fuze::SAFE };
+                        let lot =
+                            Lot { rounds, together: 1, interval_s: JETTISON_S, aim: Aim::Nearest, fuze: Fuze::SAFE };
                         self.let_go(owner, &name, lot)?;
                     }
                 }
@@ -321,6 +322,9 @@ impl Scene {
             body.look_anew();
         }
         self.views.bodies.take();
+        if is_own {
+            self.join_flown();
+        }
     }
 
     fn reposition(

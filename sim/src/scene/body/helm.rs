@@ -90,7 +90,9 @@ impl Body {
             return Ok(());
         };
         if !holds.is_sound() {
-            return Err(Refused::new("autopilot: expected finite numbers, and one of a heading, a track and an attack"));
+            return Err(Refused::new(
+                "autopilot: expected finite numbers, and one of a heading, a track and an attack",
+            ));
         }
         let [elevator, aileron, throttle] = holds.moves();
         let needs = [("elevator_norm", elevator), ("aileron_norm", aileron), ("throttle_norm", throttle)];

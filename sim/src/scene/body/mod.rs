@@ -21,8 +21,8 @@ mod loads;
 mod start;
 mod step;
 
-pub use start::BodyStart;
 pub(super) use loads::Rig;
+pub use start::BodyStart;
 
 use super::arms::{MOST_STORES_KG, StoresLoad};
 use super::codec::coded;

@@ -9,9 +9,9 @@ use crate::rigid::gear::{Met, near};
 use crate::rigid::motion::{self, State};
 use crate::rigid::quantity::Quantity;
 use crate::rigid::stiffness::{self, Mode, STEPS_A_MODE};
+use crate::scene::Freeze;
 use crate::scene::event::EndReason;
 use crate::scene::ground::SceneGround;
-use crate::scene::Freeze;
 use crate::snapshot::StableId;
 
 /// Steps between two looks at how stiff the flow makes a body.
