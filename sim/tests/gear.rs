@@ -236,13 +236,7 @@ fn the_autopilot_holds_what_it_is_told() {
     let (mut scene, id) = with(DVec3::Y * 1_000.0, DVec3::NEG_Z * 52.0, north());
     set(&mut scene, id, "throttle_norm", 0.7);
     let ground = SceneGround::heights(|_, _| Some(0.0));
-    let holds = Holds {
-        altitude_m: Some(1_150.0),
-        heading_rad: Some(1.2),
-        speed_mps: Some(50.0),
-        track: None,
-        ..Holds::default()
-    };
+    let holds = Holds { altitude_m: Some(1_150.0), heading_rad: Some(1.2), speed_mps: Some(50.0), ..Holds::default() };
     scene.order(Command::Autopilot { id, holds: Some(holds) }).unwrap();
     for _ in 0..180 * 120 {
         scene.step(&ground);

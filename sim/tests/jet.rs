@@ -162,7 +162,7 @@ fn trimmed_and_hands_off_it_stays_for_a_minute() {
 fn whatever_it_is_thrown_into_it_flies_out_of() {
     let model = jet();
     let held = level(&model, 8_000.0, Fixed::Speed(180.0)).unwrap();
-    let mut draw = draws(99);
+    let (mut draw, mut stuck, mut latest_s) = (draws(99), 0, 0);
     for case in 0..200 {
         let mut of = held.motion.clone();
         let speed_mps = 120.0 + 100.0 * draw();
@@ -179,6 +179,12 @@ fn whatever_it_is_thrown_into_it_flies_out_of() {
                 out_s = out_s.or(Some(second));
             }
         }
-        assert!(out_s.is_some(), "case {case}: {:?}", of.sample(&y, true).through_air);
+        latest_s = latest_s.max(out_s.unwrap_or(99));
+        stuck += u32::from(out_s.is_none());
+        if out_s.is_none() {
+            println!("case {case}: {:?} {:?}", of.sample(&y, true).through_air, motion::rates(&y));
+        }
     }
+    println!("out after {latest_s} s at the latest");
+    assert_eq!(stuck, 0, "of 200");
 }

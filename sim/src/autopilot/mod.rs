@@ -100,6 +100,13 @@ fn turn(angle_rad: f64) -> f64 {
     (angle_rad + PI).rem_euclid(TAU) - PI
 }
 
+/// A turn of all but half a circle goes on the way that it began: else it would be begun anew from side to side.
+fn onward(off_rad: f64, roll_rad: f64) -> f64 {
+    const HALF_RAD: f64 = 2.6;
+    let goes_on = off_rad.abs() > HALF_RAD && off_rad * roll_rad < 0.0 && roll_rad.abs() > 0.05;
+    if goes_on { off_rad - TAU.copysign(off_rad) } else { off_rad }
+}
+
 /// Adds to an integral, but not further beyond a limit that the sum it is part of has reached.
 fn integrate(integral: &mut f64, rate: f64, dt_s: f64, sum: f64, (low, high): (f64, f64)) {
     if (sum < high || rate < 0.0) && (sum > low || rate > 0.0) {
@@ -195,9 +202,11 @@ impl Autopilot {
                 let speed_mps = seen.velocity_mps.x.hypot(seen.velocity_mps.z);
                 let back = (away.dot(right) / (6.0 * speed_mps).max(100.0)).clamp(-INTERCEPT_RAD, INTERCEPT_RAD);
                 let flown = seen.velocity_mps.x.atan2(-seen.velocity_mps.z);
-                (turn(course_rad - back - flown), TURN_S)
+                (onward(turn(course_rad - back - flown), seen.angles.roll_rad), TURN_S)
             }
-            (None, None, Some(heading_rad)) => (turn(heading_rad - seen.angles.heading_rad), TURN_S),
+            (None, None, Some(heading_rad)) => {
+                (onward(turn(heading_rad - seen.angles.heading_rad), seen.angles.roll_rad), TURN_S)
+            }
             (None, None, None) => return None,
         };
         // A coordinated turn: tan(bank) = V / g x rate.

@@ -217,6 +217,16 @@ impl Scene {
         self.set_aircraft(state);
     }
 
+    /// Puts the own aircraft where the body's centre of gravity went between two steps.
+    pub(super) fn join_flown(&mut self) {
+        let Some(entity) = self.flown.and_then(|id| found(&self.bodies, id)) else { return };
+        let at = self.ecs.get::<&Body>(entity).map(|body| body.carriage(&self.surroundings.planet()));
+        if let Ok(at) = at {
+            let own = self.aircraft();
+            self.set_aircraft(AircraftState { position_m: at.position_m, velocity_mps: at.velocity_mps, ..own });
+        }
+    }
+
     /// Puts the body where the own aircraft was put, whole and with its engine running.
     pub(super) fn seat_flown(&mut self) {
         let own = self.aircraft();

@@ -322,6 +322,9 @@ impl Scene {
             body.look_anew();
         }
         self.views.bodies.take();
+        if is_own {
+            self.join_flown();
+        }
     }
 
     fn reposition(

@@ -1,4 +1,4 @@
-//! Bodies in one scene's steps: rest and numbers that run away.
+//! Bodies at rest, and bodies that run away.
 
 use super::*;
 use crate::scene::{Freeze, SceneGround, Surroundings};
