@@ -1,7 +1,7 @@
 //! The ground for rigid bodies: a window of posts as the physics engine's height field, with our diagonal.
 //!
-//! Vehicles and debris roll on it; it is also the yardstick of the ground benchmark. Aircraft, shells and sights use
-//! the ground itself: the engine's ray loses hits that lie on cell lines.
+//! Loose things lie on it ([`crate::loose`]); it is also the yardstick of the ground benchmark. Aircraft, vehicles, shells
+//! and sights use the ground itself: the engine's ray loses hits that lie on cell lines.
 //!
 //! The engine's field is centred on its origin and `scale` is its *full* extent; its array is column-major with rows
 //! along z and columns along x, so posts need no flip, only this one copy. Its cells are cut, unless told otherwise,

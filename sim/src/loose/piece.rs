@@ -74,7 +74,6 @@ impl Piece {
 
     /// Pushes it: velocity and turn are added, within what a thing may have.
     pub fn push(&mut self, velocity_mps: DVec3, rates_radps: DVec3) {
-        self.wake();
         self.phase = Phase::Moves(0.0);
         self.velocity_mps = (self.velocity_mps + velocity_mps).clamp_length_max(MOST_MPS);
         self.rates_radps = (self.rates_radps + rates_radps).clamp_length_max(MOST_RADPS);

@@ -78,11 +78,9 @@ impl Loose {
                 .map(|(_, piece)| piece)
                 .filter(|piece| !piece.moves() && near(piece.position_m, piece.kind.radius_m()))
                 .collect();
-            let mut moving: Vec<&mut Piece> =
-                self.pieces.iter_mut().map(|(_, piece)| piece).filter(|piece| piece.moves()).collect();
-            // Those that move, in order, of which the group's are some.
-            let mut rank = before.iter().enumerate().filter(|(_, (_, piece))| piece.moves()).map(|(index, _)| index);
-            moving.retain(|_| rank.next().is_some_and(|index| members.binary_search(&index).is_ok()));
+            let all = self.pieces.iter_mut().enumerate();
+            let of_group = all.filter(|(index, _)| members.binary_search(index).is_ok());
+            let mut moving: Vec<&mut Piece> = of_group.map(|(_, (_, piece))| piece).collect();
             for piece in &mut moving {
                 let drag = DRAG_KGPM3 * piece.kind.area_m2() / piece.kind.mass_kg();
                 piece.velocity_mps /= 1.0 + drag * piece.velocity_mps.length() * around.dt_s;
@@ -149,10 +147,11 @@ impl Loose {
 
 /// What the ground makes of a thing after its step; why it is gone, if it is.
 fn land(piece: &mut Piece, before: &Piece, around: &Around<'_>, put_back: &mut u64) -> Result<(), EndReason> {
-    let sound = piece.position_m.is_finite() && piece.attitude.is_finite() && piece.rates_radps.is_finite();
-    if !sound || piece.velocity_mps.length().is_nan() || piece.velocity_mps.length() > 1.001 * MOST_MPS {
+    let vectors = [piece.position_m, piece.velocity_mps, piece.rates_radps];
+    if !vectors.iter().all(|vector| vector.is_finite()) || !piece.attitude.is_finite() {
         return Err(EndReason::NotFinite);
     }
+    piece.velocity_mps = piece.velocity_mps.clamp_length_max(MOST_MPS);
     piece.rates_radps = piece.rates_radps.clamp_length_max(MOST_RADPS);
     let ground = around.ground;
     let path = StepPath::straight(before.position_m, piece.position_m, around.dt_s);
