@@ -7,7 +7,7 @@ use firing_range::{arm, armed, brick, load, release, run, scores};
 use glam::{DVec2, DVec3};
 use sim::aircraft::AircraftState;
 use sim::frame::{Angles, attitude};
-use sim::scene::{CONTACT_M, Command, EndReason, Freeze, Happening, Height, Scene, SceneGround, TargetStart};
+use sim::scene::{CONTACT_M, Command, EndReason, Event, Freeze, Happening, Height, Scene, SceneGround, TargetStart};
 use sim::situation::{BUILTIN, Situation};
 use sim::snapshot::StableId;
 

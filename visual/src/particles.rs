@@ -316,7 +316,7 @@ fn place_hash(at: DVec3) -> u32 {
 mod tests {
     use super::*;
 
-    const KINDS: [EmitterKind; 6] = [
+    const KINDS: [EmitterKind; 7] = [
         EmitterKind::Tracer,
         EmitterKind::MuzzleFlash,
         EmitterKind::Explosion,
