@@ -148,6 +148,6 @@ fn it_lands_on_its_skids_and_stands_still() {
     assert!(now.velocity_mps.length() < 1e-3 && now.position_m.distance(landed.position_m) < 0.01);
     assert!((1.0..1.25).contains(&(now.position_m.y - GROUND_M)), "{}", now.position_m.y - GROUND_M);
     // And up again.
-    fly(&mut scene, 15, climbing(2.0));
+    fly(&mut scene, 25, climbing(2.0));
     assert!(scene.aircraft().position_m.y - GROUND_M > 10.0);
 }

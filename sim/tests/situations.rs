@@ -130,3 +130,28 @@ fn situations_that_are_none_are_refused_with_what_was_expected() {
     }
     assert!(Situation::builtin("moon").unwrap_err().to_string().contains("expected one of [circuit, valley, range]"));
 }
+
+#[test]
+fn the_altimeter_reads_the_runways_elevation_in_the_weather_that_a_station_reports() {
+    let (_, text) = BUILTIN.iter().find(|(name, _)| *name == "circuit").unwrap();
+    let begin = |text: &str| {
+        let situation = Situation::from_text(std::path::Path::new("weather.toml"), text)?;
+        let scene = situation.scene(&WORLD, UtcTime { unix_ns: 0 }, 120, Default::default(), false)?;
+        Ok::<_, sim::file::FileError>(scene.snapshot())
+    };
+    let air = "air = { altitude_m = 1654.0, pressure_hPa = 828.0, temperature_C = -12.0, humidity = 0.3 }\n";
+    let (standard, cold) = (begin(text).unwrap(), begin(&format!("{air}{text}")).unwrap());
+    for now in [&standard, &cold] {
+        // The eye sits a metre over the ground that the altimeter is set for; geopotential metres are 0.03 % longer.
+        let off_m = now.air_data.altitude_m - now.aircraft.position_m.y;
+        assert!(off_m.abs() < 1.0, "{off_m} {:?}", now.air_data);
+    }
+    // 828 hPa where the standard has some 830: 1 to 3 hPa less, and a fifth more of it down at sea level.
+    let less_pa = standard.air_data.setting_pa - cold.air_data.setting_pa;
+    assert!((100.0..400.0).contains(&less_pa), "{less_pa}");
+    for (key, bad) in [("pressure_hPa", "air = { altitude_m = 0, pressure_hPa = nan }"), ("humidity", "air = { altitude_m = 0, humidity = 7 }")]
+    {
+        let refused = begin(&format!("{bad}\n{text}")).unwrap_err().to_string();
+        assert!(refused.contains(key) && refused.contains("expected"), "{refused}");
+    }
+}

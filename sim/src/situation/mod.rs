@@ -6,6 +6,7 @@
 //! | `mod.rs` | the file, and the scene of it on a world |
 //! | `own.rs` | the own aircraft: its model, its place on a runway or in the air, its stores |
 //! | `script.rs` | what is done when, in the place of a pilot |
+//! | `air.rs` | the air as a station measured it |
 //! | `laid.rs` | places of the Earth on a world's map |
 //!
 //! Places are latitude and longitude in degrees (WGS84), headings clockwise from true north, winds the velocity of the
@@ -15,6 +16,7 @@
 //! Targets stand on the world's ground; those that swim must be on one of its lakes, at its level, with their whole route.
 //! A convoy's vehicles drive one route, the first of the list ahead, `spacing_m` over speed seconds apart.
 
+mod air;
 mod laid;
 mod own;
 mod script;
@@ -27,6 +29,7 @@ use crate::weapons::target_kind::StandOn;
 use crate::weapons::{TargetKind, builtin};
 use crate::wind::Wind;
 use glam::{DQuat, DVec2, DVec3};
+use air::Report;
 use laid::Laid;
 use own::Own;
 use script::Step;
@@ -75,6 +78,7 @@ struct SituationFile {
     seed: u64,
     #[serde(default)]
     turbulence_mps: f64,
+    air: Option<Report>,
     #[serde(default)]
     wind: Vec<WindRow>,
     own: Own,
@@ -270,9 +274,15 @@ impl Situation {
             fail("wind", &format_args!("expected a height above {} m, found {}", not.before_m, not.found_m))
         })?;
         (around.turbulence_mps, around.seed) = (self.raw.turbulence_mps, self.raw.seed);
+        if let Some(report) = &self.raw.air {
+            around.atmosphere = report.atmosphere().map_err(|why| fail("air", &why))?;
+        }
+        let at_m = start.state.position_m;
+        let ground_m = laid.area.height_m(at_m.x, at_m.z).unwrap_or(at_m.y);
+        let altimeter_pa = air::qnh_pa(&around.atmosphere, ground_m);
         let mut scene = Scene::furnished(start.state, date, step_hz, around, Arc::new(catalogue))
             .map_err(|why| fail("wind, turbulence_mps", &why))?;
-        let owner = own.seat(&mut scene, &start).map_err(|why| fail("own", &why))?;
+        let owner = own.seat(&mut scene, &start, altimeter_pa).map_err(|why| fail("own", &why))?;
         for (at, target) in self.raw.target.iter().enumerate() {
             laid.stand(&mut scene, target).map_err(|why| fail(&format!("target[{at}]"), &why))?;
         }

@@ -109,13 +109,13 @@ impl Own {
         Ok(Start { place, state, runway: None })
     }
 
-    /// Makes the body, if it is one, the own aircraft; gives the id that a script orders.
-    pub fn seat(&self, scene: &mut Scene, start: &Start) -> Result<StableId, Refused> {
+    /// Makes the body, if it is one, the own aircraft, with its levers as they begin and its altimeter set; gives the id that a script orders.
+    pub fn seat(&self, scene: &mut Scene, start: &Start, altimeter_pa: f64) -> Result<StableId, Refused> {
         let throttle = if self.throttle.is_finite() { self.throttle } else { 0.0 };
         scene.set_controls(crate::input::Controls { throttle, ..Default::default() });
         let down = |is_down: bool| f64::from(u8::from(is_down));
         let (gear, parking_brake) = (down(self.aircraft.is_none() || start.runway.is_some()), down(self.parking_brake));
-        scene.set_levers(Levers { gear, parking_brake, ..Levers::default() });
+        scene.set_levers(Levers { gear, parking_brake, altimeter_pa, ..Levers::default() });
         if self.aircraft.is_none() {
             return Ok(scene.own_id());
         }
