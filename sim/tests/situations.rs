@@ -149,8 +149,10 @@ fn the_altimeter_reads_the_runways_elevation_in_the_weather_that_a_station_repor
     // 828 hPa where the standard has some 830: 1 to 3 hPa less, and a fifth more of it down at sea level.
     let less_pa = standard.air_data.setting_pa - cold.air_data.setting_pa;
     assert!((100.0..400.0).contains(&less_pa), "{less_pa}");
-    for (key, bad) in [("pressure_hPa", "air = { altitude_m = 0, pressure_hPa = nan }"), ("humidity", "air = { altitude_m = 0, humidity = 7 }")]
-    {
+    for (key, bad) in [
+        ("pressure_hPa", "air = { altitude_m = 0, pressure_hPa = nan }"),
+        ("humidity", "air = { altitude_m = 0, humidity = 7 }"),
+    ] {
         let refused = begin(&format!("{bad}\n{text}")).unwrap_err().to_string();
         assert!(refused.contains(key) && refused.contains("expected"), "{refused}");
     }
