@@ -2,12 +2,14 @@
 
 mod proving_ground;
 
+use glam::{DQuat, DVec2};
 use proving_ground::{busy, catalogue, mountains};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use sim::Scene;
 use sim::ballistics::shape::Shape;
-use sim::scene::Catalogue;
+use sim::loose::LooseKind;
+use sim::scene::{Catalogue, LooseStart};
 use std::sync::Arc;
 
 const SEED_BYTES: u64 = 20_261_132;
@@ -28,10 +30,20 @@ fn refused(bytes: &[u8]) -> String {
     Scene::restore(bytes, catalogue()).err().map_or_else(|| "taken".to_owned(), |error| error.to_string())
 }
 
+/// The busy scene with things that fall on the ground and lie about.
+fn strewn() -> Scene {
+    let mut scene = busy();
+    for (number, kind) in LooseKind::ALL.into_iter().enumerate() {
+        let (plan_m, over_ground_m) = (DVec2::new(2.0 * number as f64, 300.0), number as f64 * 0.7);
+        scene.add_loose(&LooseStart { kind, plan_m, over_ground_m, attitude: DQuat::IDENTITY }).unwrap();
+    }
+    scene
+}
+
 #[test]
 fn a_restored_scene_goes_on_to_the_bit() {
     let ground = mountains();
-    let mut whole = busy();
+    let mut whole = strewn();
     let mut saves = Vec::new();
     for step in 0..300 {
         // Before anything, in the middle of bursts, before and after failures set in and commands fall due.
@@ -83,7 +95,7 @@ fn another_catalogue_version_or_file_is_refused_by_name() {
 #[test]
 fn hostile_bytes_are_refused_or_step_but_never_panic() {
     let ground = mountains();
-    let mut scene = busy();
+    let mut scene = strewn();
     for _ in 0..70 {
         scene.step(&ground);
     }

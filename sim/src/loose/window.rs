@@ -21,8 +21,8 @@ use terrain::PostRect;
 pub const WINDOW_CELLS: u32 = 64;
 /// Posts from one window's middle to the next.
 const SHIFT: i64 = WINDOW_CELLS as i64 / 4;
-/// Windows kept for places that come back to them.
-const MOST_KEPT: usize = 16;
+/// Windows kept for places that come back to them; 38 KB each. More places than that make theirs anew each step.
+const MOST_KEPT: usize = 64;
 
 /// Column and row of the post in a window's middle.
 pub type Middle = (i64, i64);

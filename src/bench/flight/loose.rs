@@ -24,6 +24,7 @@ const THROWN_MPS: f64 = 4.0;
 /// Things that rest, and lorries that drive among them.
 const RESTING: u32 = 200;
 const LORRIES: usize = 20;
+const ASIDE_M: DVec2 = DVec2::splat(150.0);
 const GRAVITY_MPS2: f64 = 9.81;
 
 /// What the rounds told so far, nanoseconds a step.
@@ -47,7 +48,8 @@ impl Lying {
         let mut with = entities::scene(&ground, &entities::catalogue()?, lorries, LORRIES)?;
         for number in 0..RESTING {
             let (column, row) = (f64::from(number % 20), f64::from(number / 20));
-            let plan_m = DVec2::new(column / 20.0 - 0.5, row / 10.0 - 0.5) * entities::SIDE_M;
+            // Beside the lorries' ways, not on them.
+            let plan_m = DVec2::new(column / 20.0 - 0.5, row / 10.0 - 0.5) * entities::SIDE_M + ASIDE_M;
             let kind = LooseKind::ALL[number as usize % 4];
             let start = LooseStart { kind, plan_m, over_ground_m: 0.0, attitude: DQuat::IDENTITY };
             with.add_loose(&start).map_err(entities::failed)?;
@@ -55,6 +57,12 @@ impl Lying {
         // The first step puts all on the ground.
         with.step(&ground);
         without.step(&ground);
+        let [there, moving] = with.loose_counts();
+        if (there, moving) != (RESTING as usize, 0) {
+            return Err(entities::failed(format_args!(
+                "expected {RESTING} things at rest, found {there}, {moving} moving"
+            )));
+        }
         let thrown = thrown(&ground);
         let window = Window::new(&ground, middle_for(&ground, 0.0, 0.0));
         Ok(Self { thrown, window, scenes: [with, without], ground, ns: Default::default() })
