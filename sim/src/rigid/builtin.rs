@@ -19,7 +19,7 @@ pub fn names() -> String {
 /// The embedded aircraft of a name; `None` if there is none.
 ///
 /// # Errors
-/// [`FileError`] never, as a test reads them all.
+/// [`FileError`] never: a test reads them all.
 pub fn named(name: &str) -> Option<Result<Model, FileError>> {
     let (_, text) = ALL.iter().find(|(known, _)| *known == name)?;
     Some(Model::from_text(Path::new(&format!("{name}.toml")), text))

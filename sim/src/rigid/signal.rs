@@ -46,7 +46,8 @@ pub(super) fn signals(file: &ModelFile, controls: &[Control], tables: &[String])
             ));
         }
         let (min, max) = (signal.min, signal.max);
-        if !(min < max) {
+        let is_range = min < max;
+        if !is_range {
             return Err(format!("{key}: expected min < max, found {min}, {max}"));
         }
         let mut terms = Vec::new();
@@ -101,4 +102,54 @@ pub(super) fn tables_and_signals(
         tables.fill(slots, true, &mut values);
     }
     values
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::rigid::Model;
+    use crate::rigid::quantity::SLOTS;
+    use std::path::Path;
+
+    const BODY: &str = "[body]\nmass_kg = 1.0\ninertia_kgm2 = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]\n\
+        [controls]\nstick_norm = { min = -1.0, max = 1.0 }\n";
+    const SURFACE: &str = "[[signal]]\nname = \"surface_deg\"\nmin = -20.0\nmax = 20.0\n\
+        [[signal.term]]\nvalue = 30.0\ntimes = [\"stick_norm\"]\n[[signal.term]]\nvalue = 1.5\n";
+
+    fn read(text: &str) -> Result<Model, String> {
+        Model::from_text(Path::new("m.toml"), &format!("{BODY}{text}")).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_signal_is_its_sum_within_its_limits() {
+        let model = read(SURFACE).unwrap();
+        let slot = model.signal_slot("surface_deg").unwrap();
+        for (stick, expected) in [(0.0, 1.5), (0.5, 16.5), (1.0, 20.0), (-1.0, -20.0)] {
+            let mut slots = [0.0; SLOTS];
+            slots[slot - 1] = stick;
+            let nowhere = glam::DVec3::ZERO;
+            model.loads(&mut slots, nowhere, 0.0, 1.0, nowhere, &mut model.memory());
+            assert_eq!(slots[slot], expected);
+        }
+    }
+
+    #[test]
+    fn what_no_signal_can_be_is_refused_by_its_key() {
+        let over = "[table.t]\naxes = [\"surface_deg\"]\nbreakpoints = [[0.0, 1.0]]\nvalues = [0.0, 1.0]\n";
+        let asks = |name: &str, table: &str| {
+            format!(
+                "{over}{SURFACE}[[signal]]\nname = \"{name}\"\nmin = 0.0\nmax = 1.0\n[[signal.term]]\ntable = \"{table}\"\n"
+            )
+        };
+        for (wrong, told) in [
+            (SURFACE.replace("surface_deg", "surface"), "signal[0].name: expected one that ends in a unit"),
+            (SURFACE.replace("surface_deg", "stick_norm"), "signal[0].name: expected another name"),
+            (SURFACE.replace("max = 20.0", "max = -20.0"), "signal[0]: expected min < max"),
+            (SURFACE.replace("\"stick_norm\"", "\"wheel\""), "signal[0].term[0].times: found wheel"),
+            (asks("other_deg", "t"), "signal[1].term[0]: expected a table without the signal surface_deg"),
+            (asks("other_deg", "u"), "expected one of [t], found u"),
+        ] {
+            let found = read(&wrong).unwrap_err();
+            assert!(found.contains(told), "{told}: {found}");
+        }
+    }
 }
