@@ -69,7 +69,7 @@ impl Trace {
             roll_rad: angles.roll_rad,
             alpha_rad: own.alpha_rad,
             load: own.load_factor,
-            throttle: own.throttle,
+            throttle: snapshot.instruments.map_or(own.throttle, |of| of.throttle),
         });
     }
 

@@ -13,7 +13,7 @@ use sim::weapons::{Damage, WeaponKind};
 use visual::models::things::{MODELS, Model};
 use visual::passes::objects::ObjectInstance;
 
-/// Height of a light aircraft's centre of gravity over its wheels' contact, metres.
+/// Height of the centre of gravity of an aircraft of point mass over its wheels' contact, metres.
 const AIRCRAFT_CG_M: f64 = 1.25;
 
 /// Share of its paint's brightness that a damaged and a destroyed target have left: soot.
@@ -26,7 +26,8 @@ type Part = Option<(Model, f64)>;
 /// Which shape each entry of a catalogue is drawn with; `None` is not drawn as a shape.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cast {
-    bodies: Vec<Part>,
+    /// With the gear up and down.
+    bodies: Vec<[Part; 2]>,
     projectiles: Vec<Part>,
     targets: Vec<Part>,
     loose: Vec<Part>,
@@ -35,9 +36,13 @@ pub struct Cast {
 impl Cast {
     /// Of a catalogue.
     pub fn of(catalogue: &Catalogue) -> Self {
-        let body = |name: &str| {
-            let model = model(name).unwrap_or(Model::Aircraft);
-            Some((model, if model == Model::Aircraft { AIRCRAFT_CG_M } else { 0.0 }))
+        let body = |(name, of): (&str, &sim::rigid::Model)| {
+            let up = model(of.looks.as_deref().unwrap_or(name)).unwrap_or(Model::Aircraft);
+            // A shape stands on what its wheels or skids stand on; one of no wheels is drawn about its middle.
+            let wheels = of.contacts.iter().map(|one| one.at_m.z + one.radius_m);
+            let below_m = wheels.reduce(f64::max).map_or(0.0, |foot_m| foot_m - of.cg_m.z);
+            let down = if up == Model::Jet { Model::ParkedAircraft } else { up };
+            [up, down].map(|shape| Some((shape, below_m)))
         };
         let projectile = |name: &str| match catalogue.weapon_of_projectile(name)?.kind {
             WeaponKind::Bomb => Some((Model::Bomb, 0.0)),
@@ -50,7 +55,7 @@ impl Cast {
             Some((model(named).unwrap_or(Model::Truck), kind.map_or(0.0, |kind| kind.stand.below_m)))
         };
         Self {
-            bodies: catalogue.model_names().map(body).collect(),
+            bodies: catalogue.models().map(body).collect(),
             projectiles: catalogue.projectile_names().map(projectile).collect(),
             targets: catalogue.shape_names().enumerate().map(target).collect(),
             loose: LooseKind::ALL.map(|kind| Some((model(kind.name())?, kind.half_m().y))).to_vec(),
@@ -69,21 +74,30 @@ impl Cast {
         let in_body_axes = |one: &EntityView| sim::frame::view_attitude(one.attitude);
         let seen = move |one: &&EntityView| !(inside && snapshot.flown == Some(one.id));
         own.into_iter()
-            .chain(cast(snapshot.bodies.iter().filter(seen), &self.bodies, in_body_axes))
-            .chain(cast(snapshot.projectiles.iter(), &self.projectiles, in_body_axes))
-            .chain(cast(snapshot.targets.iter(), &self.targets, |one| one.attitude))
-            .chain(cast(snapshot.loose.iter(), &self.loose, |one| one.attitude))
+            .chain(cast(
+                snapshot.bodies.iter().filter(seen),
+                |one| self.bodies.get(one.of as usize)?[usize::from(one.gear_down)],
+                in_body_axes,
+            ))
+            .chain(cast(snapshot.projectiles.iter(), part(&self.projectiles), in_body_axes))
+            .chain(cast(snapshot.targets.iter(), part(&self.targets), |one| one.attitude))
+            .chain(cast(snapshot.loose.iter(), part(&self.loose), |one| one.attitude))
             .collect()
     }
 }
 
+/// What an entity of a list is drawn with.
+fn part(parts: &[Part]) -> impl Fn(&EntityView) -> Part {
+    |one| parts.get(one.of as usize).copied().flatten()
+}
+
 fn cast<'a>(
     entities: impl Iterator<Item = &'a EntityView> + 'a,
-    parts: &'a [Part],
+    part: impl Fn(&EntityView) -> Part + 'a,
     attitude: impl Fn(&EntityView) -> DQuat + 'a,
 ) -> impl Iterator<Item = ObjectInstance> + 'a {
     entities.filter_map(move |one| {
-        let (class, below_m) = parts.get(one.of as usize).copied().flatten()?;
+        let (class, below_m) = part(one)?;
         let attitude = attitude(one);
         let position_m = one.position_m - attitude * DVec3::Y * below_m;
         let shade = match one.damage {
@@ -146,6 +160,22 @@ mod tests {
     }
 
     #[test]
+    fn an_aircraft_is_drawn_as_it_looks_on_its_wheels_or_without_them() {
+        let mut catalogue = Catalogue::new();
+        for (name, text) in sim::rigid::builtin::ALL {
+            let model = sim::rigid::Model::from_text(std::path::Path::new(name), text).unwrap();
+            catalogue.add_model(name, model).unwrap();
+        }
+        let cast = Cast::of(&catalogue);
+        let shapes: Vec<[Model; 2]> = cast.bodies.iter().map(|both| both.map(|part| part.unwrap().0)).collect();
+        let [jet, parked] = [Model::Jet, Model::ParkedAircraft];
+        let expected = [[Model::Aircraft; 2], [jet, parked], [Model::Helicopter; 2]];
+        assert_eq!(shapes, expected, "{:?}", catalogue.model_names().collect::<Vec<_>>());
+        // A trainer's wheels hang 1.29 m under its centre of gravity.
+        assert!((cast.bodies[0][1].unwrap().1 - 1.29).abs() < 0.01);
+    }
+
+    #[test]
     fn loose_things_are_drawn_as_large_as_they_lie() {
         let cast = Cast::of(&Catalogue::new());
         for kind in LooseKind::ALL {
@@ -175,6 +205,7 @@ mod tests {
             hits: 0,
             damage: Damage::Destroyed,
             burning: true,
+            gear_down: true,
             jumps: 0,
         };
         let scene = sim::Scene::new(AircraftState::level(DVec3::Y * 900.0, 0.0, 60.0), UtcTime { unix_ns: 0 });

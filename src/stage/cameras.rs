@@ -270,6 +270,7 @@ mod tests {
             hits: 0,
             damage: sim::weapons::Damage::Intact,
             burning: false,
+            gear_down: true,
             jumps: 0,
         };
         let old = weapon(3, DVec3::new(0.0, 1_500.0, 0.0));

@@ -88,6 +88,8 @@ pub enum Course {
 pub struct Model {
     /// The file it comes from.
     pub file: PathBuf,
+    /// What it looks like: the name of a shape of whoever draws it.
+    pub looks: Option<String>,
     /// Mass, kg.
     pub mass_kg: f64,
     /// Inertia tensor about the centre of gravity, kg m2.
@@ -219,6 +221,7 @@ impl Model {
         autopilot.check().map_err(here)?;
         let mut model = Self {
             file: path.to_owned(),
+            looks: file.looks.clone(),
             mass_kg,
             inertia_kgm2,
             inverse_inertia: inertia_kgm2.inverse(),

@@ -15,6 +15,8 @@ use std::path::PathBuf;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ModelFile {
+    /// What it looks like: the name of a shape of whoever draws it.
+    pub looks: Option<String>,
     pub body: Option<BodyFile>,
     #[serde(default)]
     pub reference: ReferenceFile,

@@ -139,6 +139,11 @@ impl Catalogue {
         self.weapons.iter().find(|named| named.name == name).map(|named| &*named.thing)
     }
 
+    /// The models, in order.
+    pub fn models(&self) -> impl Iterator<Item = (&str, &Model)> {
+        self.models.iter().map(|named| (named.name.as_str(), &*named.thing))
+    }
+
     /// Names of the models, in order.
     pub fn model_names(&self) -> impl Iterator<Item = &str> {
         self.models.iter().map(|named| named.name.as_str())

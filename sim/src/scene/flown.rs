@@ -26,6 +26,10 @@ pub struct Instruments {
     pub rpm: [f64; 2],
     /// Fuel that is left and what the tanks hold, kg; 0 where none is counted.
     pub fuel_kg: [f64; 2],
+    /// Throttle as it is commanded, by the pilot or what flies for him, 0..1.
+    pub throttle: f64,
+    /// Gear that retracts, as it stands: 0 up, 1 down.
+    pub gear: Option<f64>,
     /// Flaps as they stand and full out, in the unit of their control; 0 without any.
     pub flaps: [f64; 2],
     /// Force to the right over weight, as the slip ball shows it.
@@ -258,6 +262,9 @@ impl Scene {
             ((own.alpha_rad - cues.buffet_rad) / (cues.full_buffet_rad - cues.buffet_rad)).clamp(0.0, 1.0)
         });
         let turns = body.shaft_radps / TAU;
+        let share = |place: usize, value: f64| (value / model.controls[place].max).clamp(0.0, 1.0);
+        let throttle = crate::handling::control(model, "throttle");
+        let gear = model.contacts.iter().find_map(|contact| contact.lowered_by);
         Some(Instruments {
             rpm: [60.0 * turns, model.power.as_ref().map_or(0.0, |power| 60.0 * power.engine.rated_radps / TAU)],
             fuel_kg: [
@@ -265,6 +272,8 @@ impl Scene {
                 model.tank.map_or(0.0, |tank| tank.capacity_kg),
             ],
             flaps: [flaps.map_or(0.0, at), flaps.map_or(0.0, |place| model.controls[place].max)],
+            throttle: throttle.map_or(own.throttle, |place| share(place, body.controls[place])),
+            gear: gear.map(|place| share(place, at(place))),
             side_g: self.side_g,
             stall_warning: airborne && model.stall.is_some_and(|cues| own.alpha_rad >= cues.warning_rad),
             buffet,

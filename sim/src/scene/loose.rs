@@ -207,6 +207,7 @@ impl Scene {
             hits: 0,
             damage: Damage::Intact,
             burning: false,
+            gear_down: true,
             jumps: 0,
         };
         self.views.loose.get_or_init(|| self.loose.pieces().iter().map(view).collect()).clone()

@@ -52,6 +52,8 @@ pub struct EntityView {
     pub damage: Damage,
     /// Whether it shows a light: a destroyed target that burns, a motor, a tracer.
     pub burning: bool,
+    /// Whether gear that retracts is down; of what has none, true.
+    pub gear_down: bool,
     /// Counts jumps, across which nothing may be interpolated.
     pub jumps: u32,
 }
@@ -200,6 +202,7 @@ impl Scene {
             hits: 0,
             damage: Damage::Intact,
             burning: false,
+            gear_down: body.is_gear_down(&self.catalogue.models[body.model as usize].thing),
             jumps: body.jumps,
         }
     }
@@ -222,6 +225,7 @@ impl Scene {
                 let weapon = &self.catalogue.weapons[load.weapon as usize].thing;
                 weapon.is_tracer(shell.round) || weapon.burns_at(shell.age_s)
             }),
+            gear_down: true,
             jumps: shell.jumps,
         }
     }
@@ -239,6 +243,7 @@ impl Scene {
             damage: target.state(),
             burning: target.state() == Damage::Destroyed
                 && target.kind.is_some_and(|kind| self.catalogue.kinds[kind as usize].thing.burns),
+            gear_down: true,
             jumps: target.jumps,
         }
     }

@@ -1,4 +1,4 @@
-//! What flies: a light aircraft, a jet, and what falls from one.
+//! What flies: a light aircraft, a jet, a helicopter, and what falls from one.
 //!
 //! Frame: see [`super`].
 
@@ -81,6 +81,17 @@ pub(super) fn aircraft(mesh: &mut Mesh) {
 
 /// A small jet with a swept wing, 15 x 10 x 4 m, on its wheels.
 pub(super) fn jet(mesh: &mut Mesh) {
+    jet_in_flight(mesh);
+    wheel(mesh, 0.0, -4.4, 0.28, 0.16);
+    for x in [-1.3_f32, 1.3] {
+        wheel(mesh, x, 1.2, 0.36, 0.22);
+        cuboid(mesh, [x - 0.06, 0.4, 1.12], [x + 0.06, 1.7, 1.28], STEEL);
+    }
+    cuboid(mesh, [-0.05, 0.3, -4.45], [0.05, 1.4, -4.35], STEEL);
+}
+
+/// The same with its wheels up.
+pub(super) fn jet_in_flight(mesh: &mut Mesh) {
     let skin = SHEET.shaded(0.9);
     body(
         mesh,
@@ -106,12 +117,61 @@ pub(super) fn jet(mesh: &mut Mesh) {
     wing(mesh, [0.4, 1.85, 4.4, 6.8], [2.9, 1.85, 6.0, 7.2], 0.14, skin);
     let fin = |x: f32| [(3.4, 2.5), (6.9, 2.4), (7.4, 4.0), (6.2, 4.0)].map(|(z, y)| Vec3::new(x, y, z)).to_vec();
     mesh.loft(&[fin(0.07), fin(-0.07)], skin.shaded(0.95));
-    wheel(mesh, 0.0, -4.4, 0.28, 0.16);
-    for x in [-1.3_f32, 1.3] {
-        wheel(mesh, x, 1.2, 0.36, 0.22);
-        cuboid(mesh, [x - 0.06, 0.4, 1.12], [x + 0.06, 1.7, 1.28], STEEL);
+}
+
+/// A light helicopter on skids, its rotor of 8 m as four blades that stand.
+pub(super) fn helicopter(mesh: &mut Mesh) {
+    let paint = OLIVE.shaded(1.15);
+    body(
+        mesh,
+        &[
+            [-1.9, 1.05, 0.1, 0.1],
+            [-1.5, 1.1, 0.5, 0.5],
+            [-0.6, 1.2, 0.72, 0.75],
+            [0.5, 1.25, 0.7, 0.74],
+            [1.4, 1.4, 0.38, 0.42],
+            [2.2, 1.5, 0.16, 0.18],
+            [5.2, 1.7, 0.07, 0.08],
+        ],
+        12,
+        paint,
+    );
+    body(
+        mesh,
+        &[[-1.8, 1.2, 0.25, 0.12], [-1.2, 1.4, 0.6, 0.4], [-0.3, 1.55, 0.66, 0.46], [0.4, 1.6, 0.4, 0.3]],
+        10,
+        GLASS,
+    );
+    mesh.column(Vec3::new(0.0, 1.9, 0.1), 0.85, [0.09, 0.07], 6, STEEL);
+    cuboid(mesh, [-0.13, 2.66, -0.03], [0.13, 2.78, 0.23], DARK);
+    // Blades along both diagonals, so that none hides another from ahead.
+    for turn in 0..4 {
+        let (sin, cos) = (std::f32::consts::FRAC_PI_4 + std::f32::consts::FRAC_PI_2 * turn as f32).sin_cos();
+        let (along, across) = (Vec3::new(cos, 0.0, sin), Vec3::new(-sin, 0.0, cos));
+        let section = |away: f32, thick: f32| {
+            let at = Vec3::new(0.0, 2.74, 0.1) + along * away;
+            [(-0.09, -thick), (0.09, -thick), (0.09, thick), (-0.09, thick)]
+                .map(|(a, b)| at + across * a + Vec3::Y * b)
+                .to_vec()
+        };
+        mesh.loft(&[section(0.15, 0.012), section(4.0, 0.008)], DARK);
     }
-    cuboid(mesh, [-0.05, 0.3, -4.45], [0.05, 1.4, -4.35], STEEL);
+    let fin = |x: f32| [(4.7, 1.2), (5.2, 1.15), (5.6, 2.5), (5.1, 2.5)].map(|(z, y)| Vec3::new(x, y, z)).to_vec();
+    mesh.loft(&[fin(0.04), fin(-0.04)], paint.shaded(0.9));
+    cuboid(mesh, [0.08, 1.0, 5.05], [0.11, 2.2, 5.15], DARK);
+    for x in [-0.95_f32, 0.95] {
+        cuboid(mesh, [x - 0.04, 0.0, -1.5], [x + 0.04, 0.08, 1.5], STEEL);
+        for z in [-0.7_f32, 0.7] {
+            let foot = Vec3::new(x, 0.06, z);
+            let top = Vec3::new(0.45 * x, 0.7, z);
+            let ring = |at: Vec3| {
+                [(-0.03, -0.03), (0.03, -0.03), (0.03, 0.03), (-0.03, 0.03)]
+                    .map(|(a, b)| at + Vec3::new(a, 0.0, -b))
+                    .to_vec()
+            };
+            mesh.loft(&[ring(foot), ring(top)], STEEL);
+        }
+    }
 }
 
 fn nozzle(z: f32, radius: f32) -> Vec<Vec3> {

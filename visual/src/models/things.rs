@@ -44,10 +44,12 @@ pub enum Model {
     Wheel,
     Beam,
     Lump,
+    Jet,
+    Helicopter,
 }
 
 /// Every model, in the order of their numbers.
-pub const MODELS: [Model; 30] = [
+pub const MODELS: [Model; 32] = [
     Model::Hangar,
     Model::ControlTower,
     Model::Terminal,
@@ -78,6 +80,8 @@ pub const MODELS: [Model; 30] = [
     Model::Wheel,
     Model::Beam,
     Model::Lump,
+    Model::Jet,
+    Model::Helicopter,
 ];
 
 impl From<PlacedClass> for Model {
@@ -147,6 +151,8 @@ impl Model {
             Self::Wheel => "wheel",
             Self::Beam => "beam",
             Self::Lump => "lump",
+            Self::Jet => "jet",
+            Self::Helicopter => "helicopter",
         }
     }
 
@@ -210,6 +216,8 @@ impl Model {
             Self::Wheel => loose::wheel_off(&mut mesh),
             Self::Beam => loose::beam(&mut mesh),
             Self::Lump => loose::lump(&mut mesh),
+            Self::Jet => aircraft::jet_in_flight(&mut mesh),
+            Self::Helicopter => aircraft::helicopter(&mut mesh),
         }
         mesh
     }

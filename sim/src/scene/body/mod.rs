@@ -167,6 +167,15 @@ impl Body {
         self.treads.iter().any(Option::is_some)
     }
 
+    /// Whether its gear, if that retracts, is more than half down.
+    pub fn is_gear_down(&self, model: &Model) -> bool {
+        let lowers = model.contacts.iter().find_map(|contact| contact.lowered_by);
+        lowers.is_none_or(|place| {
+            let now = self.moved.get(place).or_else(|| self.controls.get(place)).copied().unwrap_or(0.0);
+            now > 0.5 * model.controls[place].max
+        })
+    }
+
     /// Its pose as others see it.
     pub fn carriage(&self, planet: &crate::planet::Planet) -> Carriage {
         let turned = motion::attitude(&self.state);
