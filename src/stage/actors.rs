@@ -16,6 +16,10 @@ use visual::passes::objects::ObjectInstance;
 /// Height of the centre of gravity of an aircraft of point mass over its wheels' contact, metres.
 const AIRCRAFT_CG_M: f64 = 1.25;
 
+/// Bombs of a station that are drawn, and how far apart they hang, metres.
+const MOST_IN_A_ROW: u32 = 3;
+const BESIDE_M: f64 = 0.42;
+
 /// Share of its paint's brightness that a damaged and a destroyed target have left: soot.
 const DAMAGED_SHADE: f32 = 0.6;
 const DESTROYED_SHADE: f32 = 0.16;
@@ -74,6 +78,7 @@ impl Cast {
         let in_body_axes = |one: &EntityView| sim::frame::view_attitude(one.attitude);
         let seen = move |one: &&EntityView| !(inside && snapshot.flown == Some(one.id));
         own.into_iter()
+            .chain(hanging(snapshot, inside))
             .chain(cast(
                 snapshot.bodies.iter().filter(seen),
                 |one| self.bodies.get(one.of as usize)?[usize::from(one.gear_down)],
@@ -84,6 +89,24 @@ impl Cast {
             .chain(cast(snapshot.loose.iter(), part(&self.loose), |one| one.attitude))
             .collect()
     }
+}
+
+/// Bombs under the own aircraft: those of a station side by side.
+fn hanging(snapshot: &Snapshot, inside: bool) -> impl Iterator<Item = ObjectInstance> {
+    let own = &snapshot.aircraft;
+    let attitude = sim::frame::view_attitude(own.attitude);
+    let stations = snapshot.weapons.as_ref().filter(|_| !inside).map_or(&[][..], |page| &page.hanging[..]);
+    let bombs = stations.iter().filter(|station| station.kind == WeaponKind::Bomb);
+    let bombs = bombs.flat_map(move |station| {
+        let row = station.left.min(MOST_IN_A_ROW);
+        (0..row).map(move |number| {
+            let aside_m = (f64::from(number) - 0.5 * f64::from(row - 1)) * BESIDE_M;
+            let at = DVec3::new(station.at_m.y + aside_m, -station.at_m.z, -station.at_m.x);
+            let position_m = own.position_m + attitude * at;
+            ObjectInstance { class: Model::Bomb, position_m, attitude, scale: 1.0, shade: 1.0 }
+        })
+    });
+    bombs.collect::<Vec<_>>().into_iter()
 }
 
 /// What an entity of a list is drawn with.

@@ -7,6 +7,7 @@
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use sim::Snapshot;
 use sim::input::Head;
+use sim::snapshot::StableId;
 use terrain::Area;
 use terrain::features::model::{Features, PlacedClass};
 
@@ -22,7 +23,7 @@ pub enum Camera {
     Orbit,
     /// The nearest airfield's tower, or the ground beside the flight.
     Tower,
-    /// Behind the round, rocket or bomb fired last; then where it struck.
+    /// Behind a round, rocket or bomb to its end; then where it struck, then the one fired last.
     Weapon,
     /// Where the eye was when it was chosen, looking at the aircraft.
     Free,
@@ -75,6 +76,7 @@ pub struct Cameras {
     towers: Vec<DVec2>,
     /// Where the last weapon was, which way it went, and when.
     weapon: Option<(DVec3, DVec3, f64)>,
+    followed: Option<StableId>,
     free_m: Option<DVec3>,
     last_m: DVec3,
 }
@@ -104,7 +106,7 @@ impl Cameras {
     pub fn new(features: &Features, begin: Camera) -> Self {
         let towers = features.placed.iter().filter(|placed| placed.class == PlacedClass::ControlTower);
         let towers = towers.map(|tower| tower.at).collect();
-        Self { now: begin, towers, weapon: None, free_m: None, last_m: DVec3::ZERO }
+        Self { now: begin, towers, weapon: None, followed: None, free_m: None, last_m: DVec3::ZERO }
     }
 
     /// The camera that is on.
@@ -178,11 +180,16 @@ impl Cameras {
         DVec3::new(stand.x, ground_m + PERSON_M, stand.z)
     }
 
-    /// Keeps to the youngest weapon of the own aircraft; when it is gone, to where it was last seen.
+    /// Keeps to a weapon to its end, and to where it was last seen for a while; then to the youngest there is.
     pub fn follow_weapon(&mut self, snapshot: &Snapshot) {
-        if let Some(weapon) = snapshot.projectiles.iter().max_by_key(|weapon| weapon.id) {
+        let flying = |id| snapshot.projectiles.iter().find(|weapon| Some(weapon.id) == id);
+        let is_watched =
+            self.weapon.is_some_and(|(.., since_s)| (0.0..WATCHED_S).contains(&(snapshot.time_s - since_s)));
+        let youngest = || snapshot.projectiles.iter().max_by_key(|weapon| weapon.id).filter(|_| !is_watched);
+        if let Some(weapon) = flying(self.followed).or_else(youngest) {
             let along = weapon.velocity_mps.try_normalize().unwrap_or(DVec3::NEG_Y);
             self.weapon = Some((weapon.position_m, along, snapshot.time_s));
+            self.followed = Some(weapon.id);
         } else if self.weapon.is_some_and(|(.., since_s)| !(0.0..WATCHED_S).contains(&(snapshot.time_s - since_s))) {
             self.weapon = None;
         }
@@ -218,7 +225,6 @@ mod tests {
     use sim::UtcTime;
     use sim::aircraft::AircraftState;
     use sim::scene::{EntityKind, EntityView};
-    use sim::snapshot::StableId;
     use std::sync::Arc;
     use terrain::{Grid, Ground, synthetic};
 

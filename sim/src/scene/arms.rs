@@ -128,11 +128,24 @@ pub struct PageRow {
     pub loaded: u32,
 }
 
+/// What hangs at a station of the own aircraft.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hanging {
+    /// What it is.
+    pub kind: WeaponKind,
+    /// Where, body axes, metres from the reference point.
+    pub at_m: DVec3,
+    /// How many are left there.
+    pub left: u32,
+}
+
 /// What the own aircraft's crew sees of its weapons.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeaponPage {
     /// Every weapon that is or was carried, in the order of its stations.
     pub rows: Vec<PageRow>,
+    /// Every station.
+    pub hanging: Vec<Hanging>,
     /// Place of the selected one in `rows`.
     pub selected: Option<usize>,
     /// Whether anything may be released.
@@ -269,8 +282,21 @@ impl Scene {
         let selected = arms.selected.and_then(|weapon| kinds.iter().position(|kind| *kind == weapon));
         let fuze = arms.selected.map(|of| arms.fuze.unwrap_or(self.catalogue.weapons[of as usize].thing.fuze));
         let rows = kinds.iter().map(row).collect();
+        let hanging = arms.stations.iter().map(|station| Hanging {
+            kind: self.catalogue.weapons[station.weapon as usize].thing.kind,
+            at_m: station.at_m,
+            left: station.left,
+        });
+        let hanging = hanging.collect();
         let ccip = self.ccip(self.own_id, ground);
-        self.page =
-            Some(Arc::new(WeaponPage { rows, selected, master: arms.master, ripple: arms.ripple.max(1), fuze, ccip }));
+        self.page = Some(Arc::new(WeaponPage {
+            rows,
+            hanging,
+            selected,
+            master: arms.master,
+            ripple: arms.ripple.max(1),
+            fuze,
+            ccip,
+        }));
     }
 }

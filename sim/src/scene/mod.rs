@@ -49,7 +49,7 @@ mod target;
 mod target_grid;
 mod view;
 
-pub use arms::{MOST_STATIONS, MOST_STORES_KG, PageRow, StoresLoad, WeaponPage};
+pub use arms::{Hanging, MOST_STATIONS, MOST_STORES_KG, PageRow, StoresLoad, WeaponPage};
 pub use body::{ALTITUDES_M, BodyStart};
 pub use catalogue::Catalogue;
 pub use codec::SaveError;

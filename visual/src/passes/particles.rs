@@ -15,6 +15,8 @@ use glam::{DVec3, Vec3};
 
 /// Most sprites of a view; the nearest are kept.
 pub const MOST_SPRITES: usize = 20_000;
+/// Streaks whose end is nearer to the eye are not drawn, metres.
+const STREAK_M: f64 = 12.0;
 /// Farthest that a sprite is drawn, metres.
 const REACH_M: f64 = 30_000.0;
 
@@ -119,7 +121,9 @@ fn instances(emitters: &[Emitter], view: &View, time_s: f64) -> Vec<SpriteInstan
             let away = sprite.position_m - view.eye_m;
             let reach_m = f64::from(sprite.radius_m + sprite.axis_m.length());
             let ahead_m = away.dot(forward);
-            (ahead_m + reach_m > view.near_m && away.length() < REACH_M && sprite.opacity > 0.002)
+            // A streak that passes the eye would fill the picture.
+            let is_past = sprite.axis_m != Vec3::ZERO && away.length() < f64::from(sprite.axis_m.length()) + STREAK_M;
+            (ahead_m + reach_m > view.near_m && away.length() < REACH_M && sprite.opacity > 0.002 && !is_past)
                 .then_some((ahead_m, sprite))
         })
         .collect();
