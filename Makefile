@@ -13,7 +13,7 @@ ARGS    ?=
 # What winit and wgpu open at run time, and what gilrs links to. The Vulkan driver is Mesa's, which also draws without a graphics card.
 RUN_PACKAGES  := mesa-vulkan-drivers libvulkan1 libudev-dev pkg-config libxkbcommon0 libxkbcommon-x11-0 \
                  libx11-6 libx11-xcb1 libxcursor1 libxi6 libxrandr2
-TEST_PACKAGES := xvfb xauth xdotool
+TEST_PACKAGES := xvfb xauth xdotool umockdev
 
 .DEFAULT_GOAL := help
 # The steps of one goal build on each other.

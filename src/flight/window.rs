@@ -315,7 +315,9 @@ impl<'a> Cockpit<'a> {
 
         let snapshot = flown.sim.now();
         let moved = self.seen.replace(snapshot.controls).is_some_and(|before| before != snapshot.controls);
-        if let Some(input) = self.hands.take_moved_if(moved).filter(|input| input.elapsed() < NO_EFFECT) {
+        // What came before time ran waited for that.
+        let counts = |input: &Instant| input.elapsed() < NO_EFFECT && flown.begun.is_some_and(|begun| *input > begun);
+        if let Some(input) = self.hands.take_moved_if(moved).filter(counts) {
             self.record.add_sampled(input.elapsed());
             self.shown = Some(input);
         }

@@ -46,7 +46,7 @@ const TOWER_REACH_M: f64 = 12_000.0;
 const BESIDE_M: [f64; 2] = [1_200.0, 120.0];
 /// A watcher takes up a glass until the aircraft's surroundings, so wide, fill half of the picture's height, metres; the
 /// narrowest view of a glass, radians.
-const GLASS_M: f64 = 60.0;
+const GLASS_M: f64 = 90.0;
 const GLASS_RAD: f64 = 0.07;
 /// Distance behind a weapon, metres; behind and over where it struck; how long its strike is watched, scene seconds.
 const WEAPON_M: f64 = 12.0;

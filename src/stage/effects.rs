@@ -17,7 +17,7 @@ const MOST_KEPT: usize = 512;
 /// Radius of a tracer's glow, metres.
 const TRACER_M: f32 = 0.22;
 /// Radius of the dust of a round on the ground, and of the spark of one on a thing, metres.
-const DUST_M: f32 = 1.5;
+const DUST_M: f32 = 2.2;
 const SPARK_M: f32 = 0.5;
 /// Half the width of the water that a round throws up, metres.
 const SPLASH_M: f32 = 0.7;
