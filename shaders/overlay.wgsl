@@ -275,13 +275,13 @@ fn crater(at_m: vec2<f32>, radius_m: f32, turn: f32, pixel_m: f32) -> Mark {
     var mark: Mark;
     // The bowl and the rim of terrain::edit, its sides as steep as loose earth stays.
     let outer = 1.0 / max(r * r * r * r, 1.0);
-    mark.rise = select(-0.22 * outer, 0.85 * r, r < 1.0) * smoothstep(3.0, 1.0, pixel);
-    let thrown = smoothstep(2.6 + 1.1 * ragged, 0.95, away);
+    mark.rise = select(-0.22 * outer, 0.85 * r, r < 1.0) * (1.0 - smoothstep(1.0, 3.0, pixel));
+    let thrown = 1.0 - smoothstep(0.95, max(2.6 + 1.1 * ragged, 1.0), away);
     let dust = mix(EARTH * 1.35, EARTH, smoothstep(0.7, 1.3, r));
     var albedo = dust * (1.0 + 0.9 * clods);
     // Darker where little light comes in, and sooty in the middle.
     albedo *= mix(0.45 + 0.5 * smoothstep(0.1, 1.0, r), 1.0, step(1.0, r));
-    albedo = mix(albedo, SOOT * 2.0, 0.55 * smoothstep(0.75, 0.1, r));
+    albedo = mix(albedo, SOOT * 2.0, 0.55 * (1.0 - smoothstep(0.1, 0.75, r)));
     let inside = 1.0 - smoothstep(1.05, 1.25, r);
     let scattered = thrown * thrown * clamp(0.55 + 2.2 * clods + 0.9 * ragged, 0.0, 1.0);
     mark.colour = vec4<f32>(albedo, max(inside, 0.85 * scattered));
@@ -294,7 +294,7 @@ fn scorch(at_m: vec2<f32>, radius_m: f32, turn: f32, pixel_m: f32) -> Mark {
     let way = at / max(away, 1e-3);
     let seed = turn * 37.0;
     let ragged = speck(way * 2.0 + seed) - 0.5 + 0.7 * (speck(at * 1.7 + seed) - 0.5);
-    let cover = smoothstep(1.9, 0.35, away * (1.0 + 0.5 * ragged));
+    let cover = 1.0 - smoothstep(0.35, 1.9, away * (1.0 + 0.5 * ragged));
     let ash = max(grain(at * 4.0 + seed, 0.6, pixel_m / radius_m), 0.0);
     var mark: Mark;
     mark.rise = 0.0;

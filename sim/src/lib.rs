@@ -48,7 +48,7 @@ pub mod world_ground;
 pub use aircraft::{AircraftState, Condition};
 pub use clock::Clock;
 pub use input::{Command, Controls, Levers};
-pub use run::{SimThread, lockstep};
+pub use run::{SimThread, advance, lockstep};
 pub use scene::{Scene, SceneGround};
 pub use snapshot::{Flags, Mode, Snapshot};
 pub use track::Track;

@@ -6,15 +6,17 @@
 
 use crate::aircraft::AircraftState;
 use crate::clock::MAX_FRAME_S;
-use crate::input::{Command, Controls, Hands};
-use crate::scene::{self, Scene, SceneGround};
+use crate::input::{Command, Hands};
+use crate::scene::{self, Event, Happening, Scene, SceneGround};
 use crate::snapshot::Snapshot;
 use crate::track::Track;
 use crate::utc::UtcTime;
+use glam::DVec2;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
+use terrain::edit::{Crater, Edit};
 
 /// Takes `steps` steps and gives the scene as it stands then. A paused scene takes none.
 pub fn lockstep(scene: &mut Scene, ground: &SceneGround, steps: u32) -> Arc<Snapshot> {
@@ -28,10 +30,39 @@ pub fn lockstep(scene: &mut Scene, ground: &SceneGround, steps: u32) -> Arc<Snap
     Arc::new(scene.snapshot())
 }
 
+/// The crater of an event that the posts can show.
+pub fn crater(event: &Event) -> Option<Crater> {
+    match event.what {
+        Happening::Crater { centre_m, radius_m, depth_m, changes_posts: true } => {
+            Some(Crater { centre_m: DVec2::new(centre_m.x, centre_m.z), radius_m, depth_m })
+        }
+        _ => None,
+    }
+}
+
+/// The ground after the craters of some events, an edit each, in their order; one that cannot be made changes nothing.
+pub fn edited<'a>(ground: &SceneGround, events: impl Iterator<Item = &'a Event>) -> Option<SceneGround> {
+    let mut other: Option<SceneGround> = None;
+    for crater in events.filter_map(crater) {
+        let now = other.as_ref().unwrap_or(ground);
+        other = now.edited(&[Edit::Crater(crater)]).ok().or(other);
+    }
+    other
+}
+
+/// Takes a step, and makes the craters of it in the ground of the next; gives the scene as it stands then. A paused scene takes
+/// none.
+pub fn advance(scene: &mut Scene, ground: &mut SceneGround) -> Arc<Snapshot> {
+    let from = scene.events_counted();
+    let snapshot = lockstep(scene, ground, 1);
+    if let Some(other) = edited(ground, snapshot.events.iter().filter(|event| event.number >= from)) {
+        *ground = other;
+    }
+    snapshot
+}
+
 /// What can be told to a running simulation.
 pub enum Message {
-    /// What the pilot commands from now on.
-    Controls(Controls),
     /// A discrete command.
     Command(Command),
     /// Stops time or lets it run, whichever it was.
@@ -61,7 +92,12 @@ struct Published {
     /// Part of a step that wall time was ahead of `last` at `at`.
     fraction: f64,
     at: Instant,
+    /// What happened since it was last asked.
+    events: Vec<Event>,
 }
+
+/// Most events that wait to be taken: of more only those stay that change the ground.
+const MOST_EVENTS: usize = 100_000;
 
 /// The simulation on a thread of its own.
 pub struct SimThread {
@@ -92,7 +128,7 @@ impl SimThread {
         Self::start_with(scene, ground, None)
     }
 
-    /// The same in a pilot's hands: they are asked before each step, so that none waits for a picture. What they command
+    /// The same in a pilot's hands: they are asked each time the thread wakes to step, so that none waits for a picture. What they command
     /// beside axes and levers waits for who takes it ([`Hands::take_commands`]).
     ///
     /// # Errors
@@ -100,7 +136,8 @@ impl SimThread {
     pub fn start_with(mut scene: Scene, ground: SceneGround, hands: Option<Hands>) -> std::io::Result<Self> {
         scene.look_down(&ground);
         let first = Arc::new(scene.snapshot());
-        let published = Published { before: first.clone(), last: first, fraction: 0.0, at: Instant::now() };
+        let published =
+            Published { before: first.clone(), last: first, fraction: 0.0, at: Instant::now(), events: Vec::new() };
         let published = Arc::new(Mutex::new(published));
         let (messages, inbox) = channel();
         let step_s = scene.clock.step_s();
@@ -118,6 +155,11 @@ impl SimThread {
     /// Whether it still runs.
     pub fn is_running(&self) -> bool {
         self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
+    }
+
+    /// What happened since this was last asked, in order; nothing of it is lost however long that was.
+    pub fn take_events(&self) -> Vec<Event> {
+        std::mem::take(&mut locked(&self.published).events)
     }
 
     /// The last two snapshots.
@@ -191,7 +233,6 @@ fn drive(
         };
         while let Some(message) = next {
             match message {
-                Message::Controls(controls) => scene.set_controls(controls),
                 Message::Command(command) => scene.command(command),
                 Message::Paused(paused) => scene.clock.set_paused(paused),
                 Message::Date(date) => order(&mut scene, scene::Command::Date(date)),
@@ -230,13 +271,27 @@ fn drive(
             }
             continue;
         }
-        for _ in 1..due {
+        let mut events = Vec::new();
+        let mut step = |scene: &mut Scene| {
+            let from = scene.events_counted();
             scene.step(&ground);
+            let new = events.len();
+            events.extend(scene.events_from(from).cloned());
+            if let Some(other) = edited(&ground, events[new..].iter()) {
+                ground = other;
+            }
+        };
+        for _ in 1..due {
+            step(&mut scene);
         }
         let before = scene.snapshot();
-        scene.step(&ground);
+        step(&mut scene);
         let last = Arc::new(scene.snapshot());
         let mut published = locked(shared);
+        published.events.append(&mut events);
+        if published.events.len() > MOST_EVENTS {
+            published.events.retain(|event| crater(event).is_some());
+        }
         published.before = Arc::new(before);
         published.last = last;
         published.fraction = scene.clock.fraction();

@@ -125,6 +125,9 @@ fn own(stores: &[(&str, u32, DVec3)]) -> (Scene, StableId) {
     let owner = scene.own_id();
     scene.set_levers(input::Levers { gear: 0.0, ..Default::default() });
     scene.order(Command::FlyBody { id }).unwrap();
+    let before = scene.hash();
+    assert!(scene.order(Command::FlyBody { id: StableId(999) }).is_err());
+    assert_eq!((scene.flown(), scene.hash()), (Some(id), before), "what is refused changes nothing");
     for (weapon, rounds, at_m) in stores {
         scene.order(load(owner, weapon, *rounds, *at_m)).unwrap();
     }

@@ -54,11 +54,9 @@ pub fn fly(args: &FlyArgs, world: Arc<World>, started: Instant) -> Result<Fly, F
     let bar = Progress::new("flying");
     for frame in 0..frames {
         let mut step = || {
-            let snapshot = sim::lockstep(&mut scene, &ground, 1);
+            let snapshot = sim::advance(&mut scene, &mut ground);
             sim_hash.add(snapshot.hash());
-            if let Some(other) = marks.leave(&snapshot, &mut scenery) {
-                ground = other;
-            }
+            marks.leave(&snapshot.events, &snapshot, &mut scenery);
             snapshot
         };
         let mut snapshot = step();

@@ -65,9 +65,7 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     loop {
         let frame_start = Instant::now();
         let snapshot = sim.now();
-        if let Some(other) = marks.leave(&snapshot, &mut scenery) {
-            sim.send(Message::Ground(other));
-        }
+        marks.leave(&sim.take_events(), &snapshot, &mut scenery);
         let seen = seat.view(&mut scenery, &snapshot, look.size_px);
         let view = &seen.view;
         let heavens = sun.at(&world, snapshot.date);

@@ -92,12 +92,10 @@ pub fn take(flown: Scenery, plan: &Plan, args: &FlyArgs, date: UtcTime) -> Resul
                 album.bar.show(number as f64 / moments.len() as f64);
                 let at = (moment.at_s * hz).round() as u64;
                 while scene.clock.step() < at {
-                    let snapshot = sim::lockstep(&mut scene, &ground, 1);
+                    let snapshot = sim::advance(&mut scene, &mut ground);
                     album.effects.of(&snapshot, &ground);
                     album.trace.add(&snapshot);
-                    if let Some(other) = album.marks.leave(&snapshot, &mut album.scenery) {
-                        ground = other;
-                    }
+                    album.marks.leave(&snapshot.events, &snapshot, &mut album.scenery);
                     album.seat.cameras.follow_weapon(&snapshot);
                 }
                 let camera = moment.camera.as_deref().map_or(Ok(args.camera), |name| {
@@ -106,10 +104,8 @@ pub fn take(flown: Scenery, plan: &Plan, args: &FlyArgs, date: UtcTime) -> Resul
                     })
                 })?;
                 album.seat.cameras.set(camera);
-                let snapshot = sim::lockstep(&mut scene, &ground, 1);
-                if let Some(other) = album.marks.leave(&snapshot, &mut album.scenery) {
-                    ground = other;
-                }
+                let snapshot = sim::advance(&mut scene, &mut ground);
+                album.marks.leave(&snapshot.events, &snapshot, &mut album.scenery);
                 album.add(&snapshot, &moment.name)?;
             }
             album.plots(situation.name())?;
@@ -176,9 +172,9 @@ impl Album<'_> {
     fn bound(mut self) -> Result<Taken, Failure> {
         let sheet = Picture::contact_sheet(&self.small, COLUMNS.min(self.small.len() as u32), 1);
         self.taken.files.push(write(&sheet, self.folder, "contact-sheet.png")?);
-        for (name, places) in strips(&self.names) {
+        for (number, (name, places)) in strips(&self.names).into_iter().enumerate() {
             let strip = Picture::contact_sheet(&self.small[places], COLUMNS, 1);
-            self.taken.files.push(write(&strip, self.folder, &format!("strip-{}.png", dashed(&name)))?);
+            self.taken.files.push(write(&strip, self.folder, &format!("strip-{}-{}.png", number + 1, dashed(&name)))?);
         }
         Ok(self.taken)
     }

@@ -1,19 +1,17 @@
 //! What an aircraft did on a flight, ten times a second, and the plots of it: the whole flight, and the last landing.
 //!
-//! SI inside; plots have metres, m/s and degrees. A landing is the last time that the aircraft came down to the height that it
-//! stands at, after it had been higher than [`AIRBORNE_M`] above that; what is across is the way along the ground to that point.
+//! SI inside; plots have metres, m/s and degrees. A landing is the last time that a wheel or skid met the ground after the aircraft
+//! had been higher than [`AIRBORNE_M`] over it; what is across is the way along the ground to that point.
 
 use crate::plot::chart::{self, Chart, Curve};
 use crate::plot::drawing::Drawing;
 use glam::DVec2;
-use sim::Snapshot;
+use sim::{Condition, Snapshot};
 
 /// Time between rows, seconds.
 const EVERY_S: f64 = 0.1;
-/// Height over standing that counts as flying, metres.
+/// Height over the ground that counts as flying, metres.
 const AIRBORNE_M: f64 = 15.0;
-/// Height over standing at which wheels touch: what struts and tyres spring, metres.
-const TOUCH_M: f64 = 0.25;
 /// How much of the way before and after a touchdown is plotted, metres.
 const BEFORE_M: f64 = 1_500.0;
 const AFTER_M: f64 = 600.0;
@@ -27,6 +25,7 @@ struct Row {
     way_m: f64,
     altitude_m: f64,
     above_m: Option<f64>,
+    on_ground: bool,
     airspeed_mps: f64,
     climb_mps: f64,
     pitch_rad: f64,
@@ -63,6 +62,7 @@ impl Trace {
             way_m: self.way_m,
             altitude_m: own.position_m.y,
             above_m: snapshot.height_above_ground_m,
+            on_ground: own.condition == Condition::OnGround,
             airspeed_mps: snapshot.air_data.airspeed_mps,
             climb_mps: own.climb_mps(),
             pitch_rad: angles.pitch_rad,
@@ -103,12 +103,12 @@ impl Trace {
         Some(chart::sheet(&name, &charts, 2))
     }
 
-    /// The row of the last touchdown, and the height that the aircraft stands at, metres.
+    /// The row of the last touchdown, and the least height that the aircraft has on the ground, metres.
     fn touchdown(&self) -> Option<(usize, f64)> {
-        let heights = || self.rows.iter().enumerate().filter_map(|(at, row)| Some((at, row.above_m?)));
-        let standing_m = heights().map(|(_, height_m)| height_m).fold(f64::INFINITY, f64::min);
-        let (high, _) = heights().filter(|(_, height_m)| *height_m > standing_m + AIRBORNE_M).last()?;
-        let (touch, _) = heights().find(|(at, height_m)| *at > high && *height_m < standing_m + TOUCH_M)?;
+        let high = self.rows.iter().rposition(|row| row.above_m.is_some_and(|above_m| above_m > AIRBORNE_M))?;
+        let touch = high + self.rows[high..].iter().position(|row| row.on_ground)?;
+        let standing = self.rows.iter().filter(|row| row.on_ground).filter_map(|row| row.above_m);
+        let standing_m = standing.fold(f64::INFINITY, f64::min);
         Some((touch, standing_m))
     }
 }
@@ -151,6 +151,7 @@ mod tests {
             way_m: 40.0 * t_s,
             altitude_m: 1_600.0 + above_m,
             above_m: Some(above_m),
+            on_ground: above_m < 1.5,
             airspeed_mps: 35.0,
             climb_mps: -1.0,
             pitch_rad: 0.02,
@@ -171,6 +172,8 @@ mod tests {
         assert!(trace.landing("x").unwrap().svg().contains("touchdown at 35.0 m/s, sinking 1.00 m/s"));
         let up = Trace { rows: rows[..5].to_vec(), ..Trace::default() };
         assert_eq!(up.touchdown(), None);
+        let low = [500.0, 400.0, 300.0, 20.0, 2.0].iter().enumerate().map(|(at, height)| row(at as f64, *height));
+        assert_eq!(Trace { rows: low.collect(), ..Trace::default() }.touchdown(), None, "low is not down");
         assert!(up.flight("x").is_none(), "too short");
         assert!(Trace::default().landing("x").is_none());
     }

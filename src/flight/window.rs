@@ -1,8 +1,8 @@
 //! A window: the pilot's flight, against the wall clock, with keyboard, mouse and stick.
 //!
 //! It begins on the built-in track, so that there is something to see at once; the first move of a stick or an arrow key
-//! takes over. The devices are asked by the simulation's thread before each of its steps, so an input waits for a step and not
-//! for a picture; the eye is sampled after the next image has been waited for, right before the frame is encoded. A frame's time
+//! takes over. The devices are asked by the simulation's thread each time it wakes to step, so a stick's axis waits for a step
+//! and not for a picture; keys, the mouse and the commands of a stick's buttons come between pictures. The eye is sampled after the next image has been waited for, right before the frame is encoded. A frame's time
 //! is from one frame's beginning to the next's. Latency is measured from an input that moves controls which were at rest.
 
 use super::inputs;
@@ -88,6 +88,8 @@ struct Cockpit<'a> {
     stage: Option<(Scenery, TextureFormat)>,
     flown: Option<Flown>,
     hands: Hands,
+    /// Whether the mouse holds the trigger.
+    fires: bool,
     size_px: [u32; 2],
     hud_shown: bool,
     record: Record,
@@ -128,6 +130,7 @@ impl<'a> Cockpit<'a> {
             stage: None,
             flown: None,
             hands: Hands::new(Input::new(joystick, Controls::default().throttle)),
+            fires: false,
             size_px: [args.view.size.width_px, args.view.size.height_px],
             hud_shown: true,
             record: Record::new(started, false),
@@ -167,6 +170,10 @@ impl<'a> Cockpit<'a> {
         look.ground = before.unwrap_or(look.ground);
         let mut scenery = Scenery::new(gpu.clone(), format, self.world.clone(), look);
         scenery.use_models_of(self.args.world.as_deref())?;
+        if let Some(flown) = &self.flown {
+            // A new device: what the flight left on the ground is left again.
+            flown.marks.again(&mut scenery);
+        }
         if self.flown.is_none() {
             let plan = Plan::new(self.args, self.length, LOCKSTEP_HZ, &self.world, &scenery.area)?;
             let date = plan.date(self.args, &self.world)?;
@@ -217,8 +224,12 @@ impl<'a> Cockpit<'a> {
                     flown.seat.head.turn(right * LOOK_RAD, up * LOOK_RAD);
                 }
             }
-            Event::MouseButton { number: 0, down } if self.hands.with(|input| input.mouse.flies()) => {
-                return self.command(if down { Command::Trigger } else { Command::TriggerEnd });
+            Event::MouseButton { number: 0, down: true } if self.hands.look(|input| input.mouse.flies()) => {
+                self.fires = true;
+                return self.command(Command::Trigger);
+            }
+            Event::MouseButton { number: 0, down: false } if std::mem::take(&mut self.fires) => {
+                return self.command(Command::TriggerEnd);
             }
             Event::MouseButton { number: 1, down } => {
                 self.hands.with(|input| input.mouse.look(down));
@@ -229,11 +240,15 @@ impl<'a> Cockpit<'a> {
             Event::MouseButton { number: 2, down: true } => return self.command(Command::MouseStick),
             Event::Wheel { lines } => self.hands.with(|input| input.mouse.wheel(f64::from(lines))),
             Event::Focused(false) => {
-                // Keys let go elsewhere are not told of.
-                self.hands.with(|input| {
-                    input.keyboard.release_all();
+                // Keys and buttons let go elsewhere are not told of.
+                let mut ended = self.hands.with(|input| {
                     input.mouse.release();
+                    input.keyboard.release_all()
                 });
+                ended.extend(std::mem::take(&mut self.fires).then_some(Command::TriggerEnd));
+                for command in ended {
+                    self.command(command);
+                }
                 if let Some(flown) = &mut self.flown {
                     flown.seat.head.command(Command::LookEnd);
                 }
@@ -265,8 +280,7 @@ impl<'a> Cockpit<'a> {
             Command::Hud => self.hud_shown = !self.hud_shown,
             Command::MouseStick => {
                 let flies = self.hands.with(|input| input.mouse.take_or_give_back());
-                let told =
-                    if flies { "MOUSE FLIES   WHEEL THRUST   LEFT TRIGGER   RIGHT LOOK" } else { "MOUSE LET GO" };
+                let told = if flies { "MOUSE FLIES: WHEEL THRUST, LEFT FIRES" } else { "MOUSE LET GO" };
                 self.message = Some((told.to_owned(), Instant::now()));
             }
             Command::Screenshot => self.picture_wanted = true,
@@ -314,16 +328,15 @@ impl<'a> Cockpit<'a> {
         flown.seat.head.update(wall_s);
 
         let snapshot = flown.sim.now();
-        let moved = self.seen.replace(snapshot.controls).is_some_and(|before| before != snapshot.controls);
+        let moved =
+            self.seen.replace(snapshot.controls).is_some_and(|before| before != snapshot.controls) && !is_played;
         // What came before time ran waited for that.
         let counts = |input: &Instant| input.elapsed() < NO_EFFECT && flown.begun.is_some_and(|begun| *input > begun);
         if let Some(input) = self.hands.take_moved_if(moved).filter(counts) {
             self.record.add_sampled(input.elapsed());
             self.shown = Some(input);
         }
-        if let Some(other) = flown.marks.leave(&snapshot, scenery) {
-            flown.sim.send(Message::Ground(other));
-        }
+        flown.marks.leave(&flown.sim.take_events(), &snapshot, scenery);
         let seen = flown.seat.view(scenery, &snapshot, size_px);
         let view = &seen.view;
         let heavens = flown.sun.at(&self.world, snapshot.date);
@@ -337,7 +350,7 @@ impl<'a> Cockpit<'a> {
             let captions = Captions {
                 frame_ms: self.frame_ms,
                 status: &status,
-                mouse: self.hands.with(|input| input.mouse.flies().then(|| input.mouse.stick())),
+                mouse: self.hands.look(|input| input.mouse.flies().then(|| input.mouse.stick())),
                 hint: flown.told(&self.say).unwrap_or_else(|| flown.hint(&snapshot)),
             };
             stage::hud(&self.world, &snapshot, &seen, &heavens, captions)

@@ -52,7 +52,7 @@ pub(super) fn numbers(sheet: &mut Sheet, input: &HudInput) {
 
 /// Where a mouse that flies holds the stick, as seen from above: a cross in a box.
 fn stick(sheet: &mut Sheet, pitch: f64, roll: f64) {
-    const MIDDLE: [f64; 2] = [-430.0, 276.0];
+    const MIDDLE: [f64; 2] = [-404.0, 276.0];
     const HALF: f64 = 34.0;
     let [x, y] = MIDDLE;
     sheet.line(

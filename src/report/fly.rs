@@ -45,7 +45,8 @@ pub struct Fly {
     pub peak_rss_mib: Option<f64>,
 }
 
-/// From inputs that moved controls at rest, by the system's own time of them, to pictures.
+/// From inputs that moved controls at rest to pictures: a stick's by the system's own time of it, keys and the mouse from when they
+/// are heard of.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Latency {
     /// Inputs measured.

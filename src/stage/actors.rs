@@ -13,7 +13,7 @@ use sim::weapons::{Damage, WeaponKind};
 use visual::models::things::{MODELS, Model};
 use visual::passes::objects::ObjectInstance;
 
-/// Height of the centre of gravity of an aircraft of point mass over its wheels' contact, metres.
+/// Height over its wheels' contact of the centre of gravity of an aircraft that has no wheels, metres.
 const AIRCRAFT_CG_M: f64 = 1.25;
 
 /// Bombs of a station that are drawn, and how far apart they hang, metres.
@@ -42,9 +42,9 @@ impl Cast {
     pub fn of(catalogue: &Catalogue) -> Self {
         let body = |(name, of): (&str, &sim::rigid::Model)| {
             let up = model(of.looks.as_deref().unwrap_or(name)).unwrap_or(Model::Aircraft);
-            // A shape stands on what its wheels or skids stand on; one of no wheels is drawn about its middle.
+            // A shape stands on what its wheels or skids stand on.
             let wheels = of.contacts.iter().map(|one| one.at_m.z + one.radius_m);
-            let below_m = wheels.reduce(f64::max).map_or(0.0, |foot_m| foot_m - of.cg_m.z);
+            let below_m = wheels.reduce(f64::max).map_or(AIRCRAFT_CG_M, |foot_m| foot_m - of.cg_m.z);
             let down = if up == Model::Jet { Model::ParkedAircraft } else { up };
             [up, down].map(|shape| Some((shape, below_m)))
         };

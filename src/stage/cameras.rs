@@ -261,6 +261,28 @@ mod tests {
     }
 
     #[test]
+    fn a_tower_sees_the_aircraft_through_a_glass_from_the_edge_of_its_roof() {
+        let area = area();
+        let tower = terrain::features::model::Placed {
+            class: PlacedClass::ControlTower,
+            at: DVec2::new(-900.0, 700.0),
+            grid_heading_rad: 0.0,
+        };
+        let features = Features { placed: vec![tower], ..Features::default() };
+        let mut cameras = Cameras::new(&features, Camera::Tower);
+        let ground_m = area.height_m(-900.0, 700.0).unwrap();
+        let snapshot = snapshot(DVec3::new(1_500.0, ground_m + 300.0, -900.0));
+        let eye = cameras.eye(&snapshot, &Head::default(), &area);
+        let away = eye.at_m - DVec3::new(-900.0, ground_m, 700.0);
+        assert!((away.y - TOWER_M[0]).abs() < 1e-9 && (away.x.hypot(away.z) - TOWER_M[1]).abs() < 1e-9, "{away}");
+        let to = snapshot.aircraft.position_m - eye.at_m;
+        assert!((eye.attitude * DVec3::NEG_Z).dot(to.normalize()) > 1.0 - 1e-9);
+        // Twice 90 m fill the picture's height at its distance.
+        let seen_m = 2.0 * to.length() * (0.5 * eye.glass_rad.unwrap()).tan();
+        assert!((seen_m - 2.0 * GLASS_M).abs() < 1e-6, "{seen_m}");
+    }
+
+    #[test]
     fn the_weapon_camera_follows_the_youngest_and_stays_where_it_struck() {
         let area = area();
         let mut cameras = Cameras::new(&Features::default(), Camera::Weapon);

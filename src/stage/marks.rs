@@ -1,19 +1,21 @@
 //! From what happens in a simulated scene to what stays of it on the ground: marks, and craters that the posts can show.
 //!
-//! A mark is drawn only ([`terrain::block::overlay::decal`]); a crater of a step's radius or more is an edit of the ground, which
-//! physics meets from the next step on. An event is taken once. A scene that is earlier than what was taken is another one:
+//! A mark is drawn only ([`terrain::block::overlay::decal`]). A crater of a step's radius or more is an edit of the ground: the
+//! simulation makes it between two steps ([`sim::run::edited`]), the picture makes the same one here, in the same order, so both
+//! have the same posts and the same version. An event is taken once. A scene that is earlier than what was taken is another one:
 //! its marks go, the ground keeps its craters.
 
 use crate::output;
 use crate::scenery::Scenery;
 use glam::{DVec2, DVec3};
-use sim::scene::{Event, Happening, SceneGround};
+use sim::scene::{Event, Happening};
 use sim::snapshot::StableId;
 use sim::weapons::Damage;
 use sim::{Snapshot, scene};
 use terrain::block::overlay::Kind;
 use terrain::block::overlay::decal::Decal;
 use terrain::edit::{Crater, Edit};
+use visual::passes::decals::MOST_DECALS;
 
 /// Radius of the earth that a round without a charge throws up, metres.
 const ROUND_M: f64 = 0.3;
@@ -24,23 +26,26 @@ const WRECK_M: f64 = 3.5;
 const LEAST_UP: f64 = 0.2;
 
 /// See the module.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Marks {
     /// Events taken so far: the number of the next.
     taken: u64,
+    /// Marks and edits so far, for a device that is made anew.
+    decals: Vec<Decal>,
+    edits: Vec<Edit>,
 }
 
 impl Marks {
-    /// Leaves what a snapshot tells of on the ground of a scenery; the new ground if it is another.
-    pub fn leave(&mut self, snapshot: &Snapshot, scenery: &mut Scenery) -> Option<SceneGround> {
-        if snapshot.events_counted == self.taken {
-            return None;
-        }
+    /// Leaves what events tell of, up to a snapshot, on the ground of a scenery.
+    pub fn leave(&mut self, events: &[Event], snapshot: &Snapshot, scenery: &mut Scenery) {
         if snapshot.events_counted < self.taken {
-            *self = Self::default();
+            (self.taken, self.decals) = (0, Vec::new());
             scenery.things.clear_decals();
         }
-        let new = || snapshot.events.iter().filter(|event| event.number >= self.taken);
+        let from = self.taken;
+        let new = || events.iter().filter(|event| event.number >= from);
+        let Some(last) = new().map(|event| event.number).max() else { return };
+        self.taken = last + 1;
         let ground = scenery.scene_ground();
         let is_land = |of: &Decal| !ground.is_water(of.centre_m.x, of.centre_m.y);
         let mut decals: Vec<Decal> = new().filter_map(|event| decal(event, snapshot)).filter(is_land).collect();
@@ -52,33 +57,35 @@ impl Marks {
         decals.retain(|of| {
             of.radius_m > ROUND_M || bowls.iter().all(|(centre_m, radius_m)| centre_m.distance(of.centre_m) > *radius_m)
         });
-        let edits: Vec<Edit> = craters.into_iter().map(Edit::Crater).collect();
-        self.taken = snapshot.events_counted;
+        for crater in craters {
+            self.edits.push(Edit::Crater(crater));
+            edit(scenery, &self.edits[self.edits.len() - 1..]);
+        }
         if !decals.is_empty() {
+            let over = (self.decals.len() + decals.len()).saturating_sub(MOST_DECALS);
+            self.decals.drain(..over.min(self.decals.len()));
+            self.decals.extend_from_slice(&decals);
             scenery.things.add_decals(decals);
         }
-        if edits.is_empty() {
-            return None;
-        }
-        match scenery.edit_ground(&edits) {
-            Ok(changed) if changed.is_empty() => None,
-            Ok(_) => Some(scenery.scene_ground()),
-            Err(why) => {
-                output::tell(format_args!("poligon: no crater: {why}"));
-                None
-            }
-        }
+    }
+
+    /// Leaves all of it on another scenery of the same world.
+    pub fn again(&self, scenery: &mut Scenery) {
+        self.edits.chunks(1).for_each(|one| edit(scenery, one));
+        scenery.things.add_decals(self.decals.clone());
+    }
+}
+
+/// Makes an edit; the simulation told or refused the same one.
+fn edit(scenery: &mut Scenery, edits: &[Edit]) {
+    if let Err(why) = scenery.edit_ground(edits) {
+        output::tell(format_args!("poligon: no crater: {why}"));
     }
 }
 
 /// The crater of an event that the posts can show.
 fn crater(event: &Event) -> Option<Crater> {
-    match event.what {
-        Happening::Crater { centre_m, radius_m, depth_m, changes_posts: true } => {
-            Some(Crater { centre_m: plan(centre_m), radius_m, depth_m })
-        }
-        _ => None,
-    }
+    sim::run::crater(event)
 }
 
 fn plan(at_m: DVec3) -> DVec2 {
@@ -117,7 +124,7 @@ mod tests {
     use super::*;
     use crate::scenery::Look;
     use crate::values::Quality;
-    use sim::scene::{Catalogue, Command, Surroundings};
+    use sim::scene::{Catalogue, Command, SceneGround, Surroundings};
     use sim::weapons::{Aim, Weapon, builtin};
     use sim::{Scene, UtcTime};
     use std::path::Path;
@@ -138,7 +145,7 @@ mod tests {
     }
 
     /// Drops a bomb and lets its marks be left; steps until the ground is another, or all are down.
-    fn drop(weapon: &str, rounds: u32, scenery: &mut Scenery) -> (Scene, SceneGround, u32) {
+    fn drop(weapon: &str, rounds: u32, scenery: &mut Scenery) -> (Scene, SceneGround, Marks) {
         let start = sim::aircraft::AircraftState::level(DVec3::new(0.0, 3_000.0, 1_000.0), 0.0, 150.0);
         let date = UtcTime::parse("2026-06-21T06:00:00Z").unwrap();
         let mut scene = Scene::furnished(start, date, 120, Surroundings::default(), catalogue()).unwrap();
@@ -151,14 +158,12 @@ mod tests {
         ] {
             scene.order(command).unwrap();
         }
-        let (mut ground, mut marks, mut edits) = (scenery.scene_ground(), Marks::default(), 0);
+        let (mut ground, mut marks) = (scenery.scene_ground(), Marks::default());
         for _ in 0..120 * 60 {
-            scene.step(&ground);
-            if let Some(other) = marks.leave(&scene.snapshot(), scenery) {
-                (ground, edits) = (other, edits + 1);
-            }
+            let snapshot = sim::advance(&mut scene, &mut ground);
+            marks.leave(&snapshot.events, &snapshot, scenery);
         }
-        (scene, ground, edits)
+        (scene, ground, marks)
     }
 
     #[test]
@@ -171,13 +176,22 @@ mod tests {
         let look = Look { size_px: [64, 64], ..Look::preset(Quality::Standard) };
         let mut scenery = Scenery::new(gpu, capture::FORMAT, world, look);
         let before = scenery.scene_ground();
-        let (scene, _, edits) = drop("mk82", 3, &mut scenery);
-        assert_eq!((edits, scenery.things.decals()), (0, 3), "three small craters");
+        let (scene, _, marks) = drop("mk82", 3, &mut scenery);
+        assert_eq!((marks.edits.len(), scenery.things.decals()), (0, 3), "three small craters");
         assert_eq!(scene.snapshot().ground_version, 0);
 
-        let (scene, after, edits) = drop("huge", 1, &mut scenery);
-        assert_eq!(edits, 1);
-        assert_eq!((after.version(), scene.snapshot().ground_version), (1, 1));
+        let (scene, after, marks) = drop("huge", 1, &mut scenery);
+        assert_eq!((marks.edits.len(), after.version(), scene.snapshot().ground_version), (1, 1, 1));
+        // The picture has the very ground that the simulation made for itself; so has one on a device made anew.
+        let mut anew = Scenery::new(scenery.gpu.clone(), capture::FORMAT, scenery.world.clone(), look);
+        marks.again(&mut anew);
+        for shown in [&scenery, &anew] {
+            let area = shown.scene_ground();
+            assert_eq!(area.version(), 1);
+            for z_m in (-3_000..3_000).step_by(170).map(f64::from) {
+                assert_eq!(area.height_m(30.0, z_m), after.height_m(30.0, z_m), "{z_m}");
+            }
+        }
         let changes_m = (-3_000..3_000).step_by(50).map(f64::from).map(|z_m| {
             let height = |ground: &SceneGround| ground.height_m(0.0, z_m).unwrap_or(0.0);
             height(&after) - height(&before)
@@ -188,7 +202,7 @@ mod tests {
         // Another scene takes the marks of the one before away.
         let start = sim::aircraft::AircraftState::level(DVec3::Y * 3_000.0, 0.0, 150.0);
         let fresh = Scene::new(start, UtcTime { unix_ns: 0 }).snapshot();
-        assert!(Marks { taken: 5 }.leave(&fresh, &mut scenery).is_none());
+        Marks { taken: 5, ..marks }.leave(&fresh.events, &fresh, &mut scenery);
         assert_eq!(scenery.things.decals(), 0);
     }
 }

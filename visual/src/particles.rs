@@ -20,6 +20,9 @@ pub enum EmitterKind {
     Fire,
 }
 
+/// How long a splash lasts, seconds; over its last one it fades.
+const SPLASH_S: f32 = 5.0;
+
 /// Where, since when and how much.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emitter {
@@ -61,7 +64,7 @@ fn life_s(kind: EmitterKind) -> f64 {
         EmitterKind::MuzzleFlash => 0.09,
         EmitterKind::Explosion => 9.0,
         EmitterKind::Dust => 4.0,
-        EmitterKind::Splash => 5.0,
+        EmitterKind::Splash => f64::from(SPLASH_S),
         EmitterKind::Smoke | EmitterKind::Fire => f64::INFINITY,
     }
 }
@@ -195,7 +198,7 @@ impl Emitter {
         }
     }
 
-    /// Water thrown up, that falls back; its mist drifts a while.
+    /// Water thrown up, that falls back; what is still up at the end of its life has faded by then.
     fn splash(&self, age_s: f32, chance: Chance, sprites: &mut Vec<Sprite>) {
         const GRAVITY_MPS2: f32 = 9.81;
         let size_m = self.size_m;
@@ -216,7 +219,7 @@ impl Emitter {
                 axis_m: Vec3::ZERO,
                 radius_m: size_m * (0.16 + 0.45 * part),
                 colour: Vec3::splat(0.78),
-                opacity: 0.7 * (1.0 - 0.8 * part) * (age_s / 0.04).min(1.0),
+                opacity: 0.7 * (1.0 - 0.8 * part) * (age_s / 0.04).min(1.0) * (SPLASH_S - age_s).clamp(0.0, 1.0),
                 shines: 0.0,
                 seed: chance.hash(number, 18),
             });

@@ -1,6 +1,6 @@
 //! A pilot's hands: the devices, shared by the thread that hears of keys and the mouse and the one that flies.
 //!
-//! Whoever flies asks before each step ([`Hands::poll`]), so a stick's event waits for the next step and not for the next
+//! Whoever flies asks each time it steps ([`Hands::poll`]), so a stick's event waits for the next step and not for the next
 //! picture. The window's thread tells keys, takes commands, and asks when the input was that a picture is the first to show.
 //!
 //! Invariant others rely on: nobody holds the devices longer than a poll takes.
@@ -49,6 +49,11 @@ impl Hands {
         let mut state = self.locked();
         state.touched.get_or_insert_with(Instant::now);
         act(&mut state.input)
+    }
+
+    /// Looks at the devices.
+    pub fn look<T>(&self, at: impl FnOnce(&Input) -> T) -> T {
+        at(&self.locked().input)
     }
 
     /// Takes in what the devices did since the last call: what is commanded now, and levers that were moved away from

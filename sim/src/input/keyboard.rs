@@ -105,18 +105,6 @@ impl Keyboard {
         Self { held: Vec::new(), controls: Controls { throttle, ..Controls::default() }.checked() }
     }
 
-    /// What picks the axis that a key moves while held; none for other keys.
-    pub fn axis(name: &str) -> Option<fn(&Controls) -> f64> {
-        let (_, action) = DEFAULT_KEYS.iter().find(|(key, _)| *key == name)?;
-        match action {
-            Pitch(_) => Some(|controls| controls.pitch),
-            Roll(_) => Some(|controls| controls.roll),
-            Yaw(_) => Some(|controls| controls.yaw),
-            Throttle(_) => Some(|controls| controls.throttle),
-            Do(_) => None,
-        }
-    }
-
     /// A key went down or up; gives the command, if it is one. Repeats of a held key and unknown keys give none.
     pub fn key(&mut self, name: &str, pressed: bool) -> Option<Command> {
         let &(name, action) = DEFAULT_KEYS.iter().find(|(key, _)| *key == name)?;
@@ -138,9 +126,12 @@ impl Keyboard {
         }
     }
 
-    /// Lets go of every key, as when the window loses the focus.
-    pub fn release_all(&mut self) {
-        self.held.clear();
+    /// Lets go of every key, as when the window loses the focus; gives what that ends.
+    pub fn release_all(&mut self) -> Vec<Command> {
+        let held = std::mem::take(&mut self.held);
+        let action = |name: &&str| DEFAULT_KEYS.iter().find(|(key, _)| key == name).map(|(_, action)| *action);
+        let ending = |action| if let Do(command) = action { command.ending() } else { None };
+        held.iter().filter_map(action).filter_map(ending).collect()
     }
 
     /// Moves the axes by `wall_s` of held keys; a stall counts as a tenth of a second.
@@ -208,25 +199,10 @@ mod tests {
             keyboard.update(0.05);
         }
         assert_eq!(keyboard.controls().roll, 0.0);
-        keyboard.release_all();
+        keyboard.key("Space", true);
+        assert_eq!(keyboard.release_all(), [Command::TriggerEnd], "a trigger does not stick");
         keyboard.update(f64::NAN);
         assert_eq!(keyboard.controls().roll, 0.0);
-    }
-
-    #[test]
-    fn the_axis_of_a_key_is_the_one_it_moves() {
-        for (name, action) in DEFAULT_KEYS {
-            let mut keyboard = Keyboard::new(0.5);
-            let before = keyboard.controls();
-            keyboard.key(name, true);
-            keyboard.update(0.05);
-            let after = keyboard.controls();
-            match Keyboard::axis(name) {
-                Some(axis) => assert_ne!(axis(&before), axis(&after), "{name}"),
-                None => assert!(matches!(action, Do(_)) && before == after, "{name}"),
-            }
-        }
-        assert!(Keyboard::axis("NoSuchKey").is_none());
     }
 
     #[test]

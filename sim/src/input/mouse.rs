@@ -1,8 +1,8 @@
 //! The mouse: a stick while it flies, else a head that turns while its right button is held.
 //!
-//! Places are from the middle of the window, right and down, in halves of its height: 1 is a full deflection. Flying is
-//! taken up and given back by a command; the pointer is the stick's top, seen from above: down is back. The wheel moves the
-//! throttle.
+//! Places are in halves of the window's height, right and down: 1 is a full deflection. Flying is taken up and given back by a
+//! command; the stick is in the middle where the pointer is then, and where it is when looking about ends. The pointer is the
+//! stick's top, seen from above: down is back. The wheel moves the throttle.
 //!
 //! Invariant others rely on: a mouse that does not fly moves no axis.
 
@@ -17,6 +17,8 @@ const CURVE: Curve = Curve { dead_zone: 0.04, softness: 0.5, inverted: false };
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Mouse {
     at: [f64; 2],
+    /// Where the stick is in the middle.
+    origin: [f64; 2],
     flies: bool,
     looks: bool,
     turned: [f64; 2],
@@ -45,12 +47,12 @@ impl Mouse {
 
     /// The button that looks went down or up.
     pub fn look(&mut self, down: bool) {
-        (self.looks, self.turned) = (down, [0.0; 2]);
+        (self.looks, self.turned, self.origin) = (down, [0.0; 2], self.at);
     }
 
     /// Takes up the stick or gives it back; gives whether it flies now.
     pub fn take_or_give_back(&mut self) -> bool {
-        self.flies = !self.flies;
+        (self.flies, self.origin) = (!self.flies, self.at);
         self.flies
     }
 
@@ -69,7 +71,7 @@ impl Mouse {
         if !self.flies || self.looks {
             return [0.0; 2];
         }
-        let [roll, pitch] = self.at.map(|at| CURVE.apply(at).unwrap_or(0.0));
+        let [roll, pitch] = [0, 1].map(|way| CURVE.apply(self.at[way] - self.origin[way]).unwrap_or(0.0));
         [pitch, roll]
     }
 
@@ -95,15 +97,21 @@ mod tests {
         mouse.wheel(3.0);
         assert_eq!((mouse.stick(), mouse.take_throttle()), ([0.0; 2], 0.0));
         assert!(mouse.take_or_give_back());
+        assert_eq!(mouse.stick(), [0.0; 2], "taken up in the middle");
+        mouse.moved(1.0, 2.0);
         let [pitch, roll] = mouse.stick();
         assert_eq!(pitch, 1.0, "down is back");
         assert!(roll > 0.2 && roll < 0.5, "soft in the middle: {roll}");
         mouse.moved(f64::NAN, 0.0);
-        mouse.moved(0.02, -7.0);
+        mouse.moved(0.52, -7.0);
         assert_eq!(mouse.stick(), [-1.0, 0.0]);
         mouse.wheel(f64::INFINITY);
         mouse.wheel(-2.0);
         assert_eq!((mouse.take_throttle(), mouse.take_throttle()), (-0.08, 0.0));
+        mouse.look(true);
+        mouse.moved(0.9, 0.3);
+        mouse.look(false);
+        assert_eq!(mouse.stick(), [0.0; 2], "no jump after looking");
         mouse.release();
         assert_eq!((mouse.flies(), mouse.stick()), (false, [0.0; 2]));
     }

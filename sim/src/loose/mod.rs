@@ -165,12 +165,15 @@ impl Loose {
 
 /// Stands a thing on the ground as it was put: upright, or flat on a slope. So far above the ground it is let go there.
 pub(crate) fn stand(piece: &mut Piece, ground: &SceneGround, over_m: f64) {
-    let (x_m, z_m) = (piece.position_m.x, piece.position_m.z);
+    // Its foot as it stands, however it leans: standing anew where nothing changed moves nothing.
+    let leans = piece.attitude * DVec3::Y;
+    let foot_m = piece.position_m - leans * piece.kind.half_m().y;
+    let (x_m, z_m) = (foot_m.x, foot_m.z);
     let Some(ground_m) = ground.height_m(x_m, z_m) else { return };
     let normal = ground.normal(x_m, z_m).filter(|_| !piece.kind.stands_upright() && over_m == 0.0);
     let up = normal.unwrap_or(DVec3::Y);
-    let forward = piece.attitude * DVec3::NEG_Z;
     // Level first: what stood on one slope may stand on another later.
+    let forward = DQuat::from_rotation_arc(leans, DVec3::Y) * (piece.attitude * DVec3::NEG_Z);
     let level = DQuat::from_rotation_y((-forward.x).atan2(-forward.z));
     piece.attitude = (DQuat::from_rotation_arc(DVec3::Y, up) * level).normalize();
     piece.position_m = DVec3::new(x_m, ground_m + over_m, z_m) + up * piece.kind.half_m().y;

@@ -62,6 +62,9 @@ pub(super) fn signals(file: &ModelFile, controls: &[Control], tables: &[String])
                     ));
                 }
             }
+            if term.value.is_none() && term.table.is_none() && term.times.is_empty() {
+                return Err(format!("{key}: expected a value, a table or times, found none"));
+            }
             let value = term.value.unwrap_or(1.0);
             terms.push(factors(
                 &key,

@@ -320,7 +320,9 @@ impl Coded for Command {
             0 => {
                 let found = from.take::<u8>()?;
                 let command = PILOT.get(usize::from(found)).copied();
-                Self::Pilot(command.ok_or_else(|| from.refuse(format_args!("pilot: expected 0..=26, found {found}")))?)
+                Self::Pilot(command.ok_or_else(|| {
+                    from.refuse(format_args!("pilot: expected 0..={}, found {found}", PILOT.len() - 1))
+                })?)
             }
             1 => Self::Controls(from.take()?),
             2 => Self::Place(Box::new(from.take()?)),

@@ -221,7 +221,7 @@ impl Scene {
         done: &mut Done,
     ) {
         let on_ground = !one.in_air && one.target.is_none() && one.object.is_none();
-        let buried = on_ground && one.rested;
+        let buried = on_ground && one.burst_m != one.point_m;
         let burst = Happening::Burst {
             projectile: one.id,
             weapon: one.load.weapon,
@@ -253,11 +253,12 @@ impl Scene {
             };
             self.log.add(one.time_s, happening);
         }
-        self.blow_loose(one.id, point_m, warhead.tnt_kg);
         let vented = height_m.map_or(1.0, |height_m| vented(warhead.tnt_kg, height_m));
         if vented <= 0.0 {
             return;
         }
+        // Radii go with the cube root of a charge.
+        self.blow_loose(one.id, point_m, warhead.tnt_kg * vented.powi(3));
         self.hurt_bodies(one, point_m, warhead, vented);
         if self.swept.is_empty() {
             return;
@@ -321,7 +322,9 @@ impl Scene {
             self.views.bodies.take();
         }
         for (id, touch) in crashed {
-            self.strew(id, &touch);
+            // What comes off goes on as it went: there is no ground that would turn it.
+            let level = touch.velocity_mps.try_normalize().map_or(DVec3::Y, |way| way.any_orthonormal_vector());
+            self.strew(id, &GroundTouch { normal: level, ..touch });
         }
     }
 

@@ -113,15 +113,16 @@ impl Scene {
 
     /// Makes a body the own aircraft; the own aircraft's id makes it the point mass again.
     pub(super) fn fly(&mut self, id: StableId) -> Result<(), Refused> {
+        let missing = || Refused::new(format_args!("id: expected a rigid body of the scene, found {}", id.0));
+        let entity = found(&self.bodies, id);
+        if entity.is_none() && id != self.own_id {
+            return Err(missing());
+        }
         let left = self.flown.take();
         if let Some(left) = left.filter(|left| *left != id) {
             self.weigh(left);
         }
-        if id == self.own_id {
-            return Ok(());
-        }
-        let missing = || Refused::new(format_args!("id: expected a rigid body of the scene, found {}", id.0));
-        let entity = found(&self.bodies, id).ok_or_else(missing)?;
+        let Some(entity) = entity else { return Ok(()) };
         self.flown = Some(id);
         self.weigh(id);
         if self.clock.step() == 0 {
@@ -168,7 +169,8 @@ impl Scene {
             let part = move |stem: &str| {
                 crate::handling::control(&model, stem).map(|place| {
                     let (of, value) = (&model.controls[place], controls[place]);
-                    if value < 0.0 { -value / of.min } else { value / of.max }
+                    let most = if value < 0.0 { -of.min } else { of.max };
+                    if most > 0.0 { value / most } else { 0.0 }
                 })
             };
             (part, AircraftState { attitude: turned, ..self.aircraft() })
@@ -176,6 +178,7 @@ impl Scene {
         self.controls.throttle = part("throttle").unwrap_or(self.controls.throttle);
         self.levers.trim = part("elevator_trim").unwrap_or(0.0);
         self.levers.mixture = part("mixture").unwrap_or(self.levers.mixture);
+        self.levers = self.levers.checked();
         if part("elevator_trim").is_none() {
             self.controls.pitch = part("elevator").unwrap_or(0.0);
         }
@@ -262,7 +265,10 @@ impl Scene {
             ((own.alpha_rad - cues.buffet_rad) / (cues.full_buffet_rad - cues.buffet_rad)).clamp(0.0, 1.0)
         });
         let turns = body.shaft_radps / TAU;
-        let share = |place: usize, value: f64| (value / model.controls[place].max).clamp(0.0, 1.0);
+        let share = |place: usize, value: f64| {
+            let most = model.controls[place].max;
+            if most > 0.0 { (value / most).clamp(0.0, 1.0) } else { 0.0 }
+        };
         let throttle = crate::handling::control(model, "throttle");
         let gear = model.contacts.iter().find_map(|contact| contact.lowered_by);
         Some(Instruments {

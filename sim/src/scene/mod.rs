@@ -155,7 +155,7 @@ pub struct Scene {
     swept_anew: bool,
     /// Whether targets wait for their height over the ground.
     unsettled: bool,
-    /// Version of the ground of the last step, once there was one. The ground is the caller's: it is not saved.
+    /// Version of the ground of the last step, once there was one. The ground itself is the caller's: it is not saved.
     ground_version: Option<u32>,
     grid: TargetGrid,
     bursts: Vec<Burst>,

@@ -217,7 +217,12 @@ impl Scene {
             return Err(Refused::new(format_args!("load: expected at most {MOST_STATIONS} stations")));
         }
         let more_kg = self.catalogue.weapons[weapon as usize].thing.carried_kg * f64::from(rounds);
-        let mass_kg = self.stores_load(owner).mass_kg + more_kg;
+        // The own aircraft's stations and those of the body that it is hang on one body.
+        let is_own = owner == self.own_id || self.flown == Some(owner);
+        let together = [Some(self.own_id), self.flown];
+        let carriers = if is_own { together } else { [Some(owner), None] };
+        let hung_kg: f64 = carriers.into_iter().flatten().map(|id| self.stores_load(id).mass_kg).sum();
+        let mass_kg = hung_kg + more_kg;
         if mass_kg > MOST_STORES_KG {
             return Err(Refused::new(format_args!(
                 "load: expected stores of up to {MOST_STORES_KG} kg, found {mass_kg}"
@@ -281,6 +286,14 @@ impl Scene {
     fn jettison(&mut self, owner: StableId, weapon: Option<&str>) -> Result<(), Refused> {
         let only = weapon.map(|name| self.catalogue.weapon(name)).transpose()?;
         let kinds = self.arms_of(owner)?.kinds().into_iter().filter(|kind| only.is_none_or(|only| only == *kind));
+        let kinds: Vec<u32> = kinds.collect();
+        // All that could be refused on the way is refused before anything goes.
+        if self.carriage(owner).is_none() {
+            return Err(Refused::new(format_args!("jettison: expected one that can let go, found {}", owner.0)));
+        }
+        if self.bursts.len() + kinds.len() > MOST_BURSTS {
+            return Err(Refused::new(format_args!("jettison: expected at most {MOST_BURSTS} bursts at a time")));
+        }
         for weapon in kinds {
             let named = &self.catalogue.weapons[weapon as usize];
             let (name, of) = (named.name.clone(), named.thing.clone());

@@ -52,6 +52,7 @@ impl Scene {
         (self.mode, self.freeze).put(&mut out);
         (self.height_above_ground_m, self.jumps).put(&mut out);
         (self.levers, self.flown).put(&mut out);
+        self.ground_version.put(&mut out);
         self.surroundings.put(&mut out);
         (self.next_id, self.unsettled).put(&mut out);
         self.put_all::<Body>(&self.bodies, &mut out);
@@ -106,6 +107,7 @@ impl Scene {
         let (mode, freeze): (Mode, Freeze) = from.take()?;
         let (height_above_ground_m, jumps) = from.take()?;
         let (levers, flown): (Levers, Option<StableId>) = from.take()?;
+        let ground_version: Option<u32> = from.take()?;
         let surroundings: Surroundings = from.take()?;
         let mut scene = Self::within(start, clock.date(), clock.step_hz, surroundings, catalogue);
         for state in [&start, &own] {
@@ -123,6 +125,7 @@ impl Scene {
         }
         scene.next_id = next_id;
         (scene.levers, scene.flown) = (levers.checked(), flown);
+        scene.ground_version = ground_version;
         scene.take_entities(&mut from)?;
         if flown.is_some_and(|id| super::found(&scene.bodies, id).is_none()) {
             return Err(from.refuse("flown: expected a body of the scene"));

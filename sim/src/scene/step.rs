@@ -160,7 +160,7 @@ impl Scene {
             if outcome == Outcome::Flies {
                 let motion = &rig.motion;
                 let about = (&self.swept[..], &self.grid);
-                let touch = struck(&motion.model, motion.cg_m, [&from, &body.state], dt_s, ground, about);
+                let touch = struck(body, &motion.model, motion.cg_m, &from, dt_s, ground, about);
                 outcome = touch.map_or(outcome, |touch| body.wreck(EndReason::Struck, touch));
             }
             match outcome {

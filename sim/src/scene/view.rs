@@ -169,6 +169,16 @@ impl Scene {
         AirData::of(&air, aircraft.airspeed_mps, self.levers.altimeter_pa, altitude_m)
     }
 
+    /// Events since the scene began.
+    pub fn events_counted(&self) -> u64 {
+        self.log.counted
+    }
+
+    /// Events from a number on, of those that are still kept.
+    pub fn events_from(&self, number: u64) -> impl Iterator<Item = &Event> {
+        self.log.recent.iter().filter(move |event| event.number >= number)
+    }
+
     fn recent_events(&self) -> Arc<[Event]> {
         if self.log.recent.is_empty() { Arc::default() } else { self.log.recent.as_slice().into() }
     }

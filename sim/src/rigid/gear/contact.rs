@@ -21,7 +21,7 @@ const DAMPER_IN_M: f64 = 0.01;
 /// Sliding speed at which friction has come down from static to sliding, m/s.
 const STRIBECK_MPS: f64 = 0.1;
 /// Part of the way at which a wheel that retracts is down and locked.
-const DOWN: f64 = 0.99;
+pub const DOWN: f64 = 0.99;
 /// Least cosine between a strut and the ground's normal.
 const LEAST_COSINE: f64 = 0.3;
 

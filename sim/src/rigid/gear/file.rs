@@ -89,6 +89,15 @@ pub(in crate::rigid) fn contacts(
             Ok::<_, String>(Steer { control: control(&key("steer"), &steer.control)?, gain_rad: steer.gain_rad })
         });
         let lowered_by = wheel.lowered_by.as_ref().map(|name| control(&key("lowered_by"), name)).transpose()?;
+        if let Some(of) = lowered_by.map(|place| &controls[place]).filter(|of| (of.min, of.max) != (0.0, 1.0)) {
+            return Err(format!(
+                "{}: expected a control from 0 to 1, found {} from {} to {}",
+                key("lowered_by"),
+                of.name,
+                of.min,
+                of.max
+            ));
+        }
         let grip_npm = within(&key("grip_Npm"), wheel.grip_Npm, 1.0, 1e9)?;
         let [fixed, sliding] = [wheel.static_friction, wheel.sliding_friction];
         all.push(Contact {

@@ -38,6 +38,8 @@ use crate::autopilot::{Autopilot, Holds, Sight};
 use crate::frame::{world_attitude_from_ned, world_from_ned};
 use crate::rigid::Model;
 use crate::rigid::gear::Tread;
+use crate::rigid::gear::contact::{Contact, DOWN};
+use crate::rigid::model::Control;
 use crate::rigid::motion::{self, State};
 use crate::rigid::stiffness::{MOST_PIECES, Mode, Stiffness};
 use crate::turbulence::Dryden;
@@ -142,7 +144,13 @@ impl Body {
         if !self.stores.is_sound() {
             return Err(Refused::new("body.stores: expected an inertia that masses can have, and a drag of 0 or more"));
         }
-        let lists = [(self.moved.len(), controls), (self.treads.len(), model.contacts.len())];
+        let (moved, slow) = (self.moved.len(), model.controls.iter().any(Control::is_slow));
+        if moved != if slow { controls } else { 0 } {
+            return Err(Refused::new(format_args!(
+                "body.moved: expected {controls} of a model with slow controls, found {moved}"
+            )));
+        }
+        let lists = [(self.treads.len(), model.contacts.len())];
         if let Some((found, expected)) = lists.into_iter().find(|(found, expected)| *found != 0 && found != expected) {
             return Err(Refused::new(format_args!("body: expected a list of 0 or {expected}, found {found}")));
         }
@@ -167,13 +175,20 @@ impl Body {
         self.treads.iter().any(Option::is_some)
     }
 
+    /// A control as it stands.
+    fn stands(&self, place: usize) -> f64 {
+        self.moved.get(place).or_else(|| self.controls.get(place)).copied().unwrap_or(0.0)
+    }
+
+    /// Whether a contact is out: one that retracts only when it is all but down.
+    pub fn is_out(&self, contact: &Contact) -> bool {
+        contact.lowered_by.is_none_or(|place| self.stands(place) >= DOWN)
+    }
+
     /// Whether its gear, if that retracts, is more than half down.
     pub fn is_gear_down(&self, model: &Model) -> bool {
         let lowers = model.contacts.iter().find_map(|contact| contact.lowered_by);
-        lowers.is_none_or(|place| {
-            let now = self.moved.get(place).or_else(|| self.controls.get(place)).copied().unwrap_or(0.0);
-            now > 0.5 * model.controls[place].max
-        })
+        lowers.is_none_or(|place| self.stands(place) > 0.5)
     }
 
     /// Its pose as others see it.

@@ -1,6 +1,6 @@
 //! What the parts of a body strike beside the ground: buildings, masts, targets.
 //!
-//! World frame. Each contact of the model, a wheel's hub or a part's point, is swept along its own way in the step, which the
+//! World frame. Each contact of the model that is out, a wheel's hub or a part's point, is swept along its own way in the step, which the
 //! body's turning bends; of a model without contacts the centre of gravity. Targets stand where they stood at the end of the
 //! step before. What lies between the contacts (a wing's leading edge) strikes nothing by itself.
 //!
@@ -27,9 +27,10 @@ fn point(y: &State, arm_m: DVec3) -> (DVec3, DVec3) {
 
 /// The first thing or target that a part strikes on the way from one state to another.
 pub fn struck(
+    body: &Body,
     model: &Model,
     cg_m: DVec3,
-    [from, to]: [&State; 2],
+    from: &State,
     step_s: f64,
     ground: &SceneGround,
     (targets, grid): (&[Target], &TargetGrid),
@@ -37,6 +38,7 @@ pub fn struck(
     if targets.is_empty() && !ground.has_things() {
         return None;
     }
+    let to = &body.state;
     let mut first: Option<GroundTouch> = None;
     let mut earlier = |touch: GroundTouch| {
         if first.as_ref().is_none_or(|first| touch.fraction < first.fraction) {
@@ -62,7 +64,8 @@ pub fn struck(
     if model.contacts.is_empty() {
         sweep(DVec3::ZERO);
     } else {
-        model.contacts.iter().for_each(|contact| sweep(contact.at_m - cg_m));
+        let out = model.contacts.iter().filter(|contact| body.is_out(contact));
+        out.for_each(|contact| sweep(contact.at_m - cg_m));
     }
     first
 }

@@ -77,7 +77,14 @@ impl Body {
             self.fly_by_itself(&rig.motion, dt_s);
         }
         if !self.moved.is_empty() {
-            self.move_controls(&rig.motion.model.clone(), dt_s);
+            let model = rig.motion.model.clone();
+            // A lever on the ground is locked: gear does not fold under what stands on it, nor lift what lies on its belly.
+            let locked = model.contacts.iter().find_map(|contact| contact.lowered_by).filter(|_| self.is_on_ground());
+            let gear = locked.map(|place| (place, self.moved[place]));
+            self.move_controls(&model, dt_s);
+            if let Some((place, as_it_was)) = gear {
+                self.moved[place] = as_it_was;
+            }
         }
         self.load(rig);
         if rig.motion.model.uses(Quantity::AglM) {
