@@ -53,3 +53,22 @@ fn numbers_that_run_away_end_a_flight_at_its_last_good_state() {
     assert!(matches!(ended, Some(Outcome::Ended(..))), "{ended:?}");
     assert!(body.state.iter().all(|number| number.is_finite()));
 }
+
+#[test]
+fn a_restored_body_without_its_slow_controls_is_refused() {
+    let model = Arc::new(crate::rigid::builtin::named("jet").unwrap().unwrap());
+    let around = Surroundings::default();
+    let mut rig = Rig::new(&model, &around);
+    let start = BodyStart {
+        model: String::new(),
+        position_m: DVec3::Y * 3_000.0,
+        velocity_mps: DVec3::NEG_Z * 200.0,
+        attitude: DQuat::IDENTITY,
+        rates_radps: DVec3::ZERO,
+        fuel: None,
+    };
+    let mut body = Body::new(&start, 0, &mut rig, &[1], &around).unwrap();
+    body.check(&model).unwrap();
+    body.moved.clear();
+    assert!(body.check(&model).unwrap_err().to_string().contains("body.moved"));
+}
