@@ -2,9 +2,9 @@
 //!
 //! Young's equation for soil, in SI: depth `1.8e-5 K S N (m/A)^0.7 (v - 30.5)` from 61 m/s on and
 //! `9.3e-4 K S N (m/A)^0.7 ln(1 + 2.15e-4 v^2)` below, metres, with m in kg, A in m2, v in m/s (converted from its form in
-//! feet, pounds and inches, 0.00178 and 0.3, whose branches meet); `K = 0.27 m^0.4` below 27 kg, else
-//! 1. S says how soft the ground is, N how sharp the nose. It slows down evenly, along the line that it struck on; below
-//! [`LEAST_GRAZING_RAD`] to the ground it does not go in.
+//! feet, pounds and inches, 0.00178 and 0.3, whose branches meet). K is `0.27 m^0.4` below 27 kg and 1 above, S says how soft the
+//! ground is, N how sharp the nose. It slows down evenly, along the line that it struck on; below [`LEAST_GRAZING_RAD`] to the
+//! ground it does not go in.
 //!
 //! Source: C. W. Young, Penetration Equations, Sandia SAND97-2426, 1997, equations and S-numbers from memory, not checked:
 //! rock 1, dense soil 5, loose sand 8, snow 30 (an estimate). A bomb's ogive is taken as N = 0.9. Even slowing and the
