@@ -271,7 +271,7 @@ mod tests {
         let features = Features { placed: vec![tower], ..Features::default() };
         let mut cameras = Cameras::new(&features, Camera::Tower);
         let ground_m = area.height_m(-900.0, 700.0).unwrap();
-        let snapshot = snapshot(DVec3::new(1_500.0, ground_m + 300.0, -900.0));
+        let snapshot = snapshot(DVec3::new(300.0, ground_m + 300.0, -900.0));
         let eye = cameras.eye(&snapshot, &Head::default(), &area);
         let away = eye.at_m - DVec3::new(-900.0, ground_m, 700.0);
         assert!((away.y - TOWER_M[0]).abs() < 1e-9 && (away.x.hypot(away.z) - TOWER_M[1]).abs() < 1e-9, "{away}");

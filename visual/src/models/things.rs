@@ -273,11 +273,12 @@ mod tests {
                     continue;
                 }
                 if let Model::Jet | Model::Helicopter = model {
-                    // 15 x 10 x 4 m without its wheels, on which its foot would be; rotor of 8 m, 7.5 m long, skids on the ground.
+                    // 15 x 10 x 4 m without its wheels, on which its foot would be; four blades of 4 m along the diagonals, 2.83 m
+                    // ahead and aside, skids on the ground.
                     let size = high - low;
                     let expected =
-                        if model == Model::Jet { Vec3::new(10.0, 2.9, 14.9) } else { Vec3::new(5.6, 2.8, 7.5) };
-                    assert!((size - expected).abs().max_element() < 0.4 && low.y >= 0.0, "{model:?} {low} {high}");
+                        if model == Model::Jet { Vec3::new(10.0, 2.9, 14.9) } else { Vec3::new(5.8, 2.8, 8.4) };
+                    assert!((size - expected).abs().max_element() < 0.1 && low.y >= 0.0, "{model:?} {low} {high}");
                     continue;
                 }
                 if (Model::Barrel..=Model::Lump).contains(&model) {
