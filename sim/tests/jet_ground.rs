@@ -81,6 +81,25 @@ fn it_stands_on_its_wheels_and_takes_off() {
 }
 
 #[test]
+fn its_gear_does_not_fold_under_it_and_comes_up_once_it_flies() {
+    let up = Levers { gear: 0.0, parking_brake: 1.0, ..Levers::default() };
+    let mut scene = jet(standing_m(), DVec3::ZERO, Levers { gear: 1.0, ..up }, IDLE);
+    fly(&mut scene, 3, |_| IDLE);
+    let before = scene.aircraft();
+    scene.set_levers(up);
+    fly(&mut scene, 10, |_| IDLE);
+    let now = scene.aircraft();
+    assert_eq!((now.condition, scene.snapshot().bodies[0].gear_down), (Condition::OnGround, true));
+    // It settles by less than its struts travel.
+    assert!((now.position_m - before.position_m).length() < 0.01, "{} {}", now.position_m, before.position_m);
+    let mut flying = jet(500.0, DVec3::NEG_Z * 150.0, Levers { gear: 0.0, ..Levers::default() }, IDLE);
+    assert!(!flying.snapshot().bodies[0].gear_down, "it begins as its lever stands");
+    flying.set_levers(Levers::default());
+    fly(&mut flying, 6, |_| Controls { throttle: 0.5, ..IDLE });
+    assert!(flying.snapshot().bodies[0].gear_down, "five seconds down");
+}
+
+#[test]
 fn its_gear_costs_thrust() {
     let throttle = |gear: f64| {
         let mut scene = jet(1_000.0, DVec3::NEG_Z * 120.0, Levers { gear, ..Levers::default() }, IDLE);

@@ -236,6 +236,7 @@ fn a_bomb_dropped_too_low_takes_its_own_bomber_along_and_one_from_high_up_does_n
         let wrecked = |event: &Event| matches!(event.what, Happening::Crash { reason: EndReason::Blast, .. });
         let at = events.iter().position(wrecked);
         assert!(at.is_none_or(|at| at > burst), "the burst first");
+        assert!(at.is_none() || scene.loose_counts()[0] > 0, "what it breaks lies about");
         at.is_none()
     };
     // The curve's radius for what is light is 14 m: at 2 m it is certain but for one in 50.
