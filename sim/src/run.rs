@@ -128,8 +128,8 @@ impl SimThread {
         Self::start_with(scene, ground, None)
     }
 
-    /// The same in a pilot's hands: they are asked each time the thread wakes to step, so that none waits for a picture. What they command
-    /// beside axes and levers waits for who takes it ([`Hands::take_commands`]).
+    /// The same in a pilot's hands: they are asked each time the thread wakes to step, so that none waits for a picture. What
+    /// they command beside axes and levers waits for who takes it ([`Hands::take_commands`]).
     ///
     /// # Errors
     /// The system's, if it gives no thread.
@@ -157,7 +157,7 @@ impl SimThread {
         self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
     }
 
-    /// What happened since this was last asked, in order; nothing of it is lost however long that was.
+    /// What happened since this was last asked, in order, however long that was; of very much only what changes the ground.
     pub fn take_events(&self) -> Vec<Event> {
         std::mem::take(&mut locked(&self.published).events)
     }

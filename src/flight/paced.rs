@@ -64,8 +64,10 @@ pub fn fly(args: &FlyArgs, hz: f64, world: Arc<World>, started: Instant) -> Resu
     let bar = Progress::new("flying");
     loop {
         let frame_start = Instant::now();
+        // Before the snapshot, which then knows of all of them.
+        let events = sim.take_events();
         let snapshot = sim.now();
-        marks.leave(&sim.take_events(), &snapshot, &mut scenery);
+        marks.leave(&events, &snapshot, &mut scenery);
         let seen = seat.view(&mut scenery, &snapshot, look.size_px);
         let view = &seen.view;
         let heavens = sun.at(&world, snapshot.date);

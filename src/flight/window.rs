@@ -2,8 +2,9 @@
 //!
 //! It begins on the built-in track, so that there is something to see at once; the first move of a stick or an arrow key
 //! takes over. The devices are asked by the simulation's thread each time it wakes to step, so a stick's axis waits for a step
-//! and not for a picture; keys, the mouse and the commands of a stick's buttons come between pictures. The eye is sampled after the next image has been waited for, right before the frame is encoded. A frame's time
-//! is from one frame's beginning to the next's. Latency is measured from an input that moves controls which were at rest.
+//! and not for a picture; keys, the mouse and the commands of a stick's buttons come between pictures. The eye is sampled after
+//! the next image has been waited for, right before the frame is encoded. A frame's time is from one frame's beginning to the
+//! next's. Latency is measured from an input that moves controls which were at rest.
 
 use super::inputs;
 use super::plan::{LOCKSTEP_HZ, Length, Plan};
@@ -327,6 +328,8 @@ impl<'a> Cockpit<'a> {
         }
         flown.seat.head.update(wall_s);
 
+        // Before the snapshot, which then knows of all of them.
+        let events = flown.sim.take_events();
         let snapshot = flown.sim.now();
         let moved =
             self.seen.replace(snapshot.controls).is_some_and(|before| before != snapshot.controls) && !is_played;
@@ -336,7 +339,7 @@ impl<'a> Cockpit<'a> {
             self.record.add_sampled(input.elapsed());
             self.shown = Some(input);
         }
-        flown.marks.leave(&flown.sim.take_events(), &snapshot, scenery);
+        flown.marks.leave(&events, &snapshot, scenery);
         let seen = flown.seat.view(scenery, &snapshot, size_px);
         let view = &seen.view;
         let heavens = flown.sun.at(&self.world, snapshot.date);
